@@ -1,0 +1,19 @@
+//! Links WGSL modules declared in RON into one validated naga module.
+
+pub mod catalog;
+pub mod diagnostics;
+pub mod emit;
+pub mod library;
+pub mod manifest;
+pub mod program;
+pub mod reflect;
+pub mod validate;
+
+pub use catalog::{Catalog, Category, Module};
+pub use diagnostics::{Diagnostic, Report};
+pub use emit::{Target, emit};
+pub use library::Library;
+pub use naga;
+pub use program::{Program, Recipe, Why};
+pub use reflect::Reflection;
+pub use validate::Validated;

@@ -1,0 +1,5 @@
+//! What a host program must know to run a linked module.
+
+mod types;
+
+pub use types::*;

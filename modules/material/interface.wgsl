@@ -1,0 +1,35 @@
+/// A point of a drawn surface, as interpolated.
+struct Fragment {
+    /// World space, m.
+    position: vec3f,
+    /// Unit length, world space, on the side of the viewer for double-sided objects.
+    normal: vec3f,
+    /// Unit length, world space; w is the sign of the bitangent.
+    tangent: vec4f,
+    uv: vec2f,
+}
+
+/// What light finds at a point.
+struct Surface {
+    /// World space, m.
+    position: vec3f,
+    /// Shading normal, unit length.
+    normal: vec3f,
+    /// Interpolated normal before any normal map, unit length.
+    geometric_normal: vec3f,
+    /// Albedo of the diffuse part, linear Rec.709 in [0, 1].
+    diffuse: vec3f,
+    /// Reflectance at normal incidence, linear Rec.709 in [0, 1].
+    f0: vec3f,
+    /// GGX width: perceptual roughness squared, in (0, 1].
+    alpha: f32,
+    /// Emitted radiance, cd/m2 per channel.
+    emission: vec3f,
+    /// Coverage in [0, 1].
+    opacity: f32,
+}
+
+/// The surface at a point. The neutral one is half-grey paper.
+fn surface(at: Fragment) -> Surface {
+    return Surface(at.position, at.normal, at.normal, vec3f(0.5), vec3f(0.04), 1.0, vec3f(0.0), 1.0);
+}
