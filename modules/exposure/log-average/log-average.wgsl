@@ -12,13 +12,14 @@ struct Reduction {
     mean: f32,
 }
 
-struct SumIn {
-    @builtin(local_invocation_index) lane: u32,
+/// What is equal for all invocations of a workgroup. A struct of its own: a compiler that checks uniform control flow
+/// takes a struct to be as non-uniform as its most non-uniform member.
+struct GroupIn {
     @builtin(workgroup_id) group: vec3u,
     @builtin(num_workgroups) groups: vec3u,
 }
 
-struct MeanIn {
+struct LaneIn {
     @builtin(local_invocation_index) lane: u32,
 }
 
@@ -42,13 +43,13 @@ fn add_lanes(lane: u32) {
 
 /// Dispatched with one invocation for each texel of the frame; the first GROUPS workgroups walk over all of them.
 @compute @workgroup_size(16, 16)
-fn sum_texels(in: SumIn) {
-    let group = in.group.y * in.groups.x + in.group.x;
+fn sum_texels(whole: GroupIn, in: LaneIn) {
+    let group = whole.group.y * whole.groups.x + whole.group.x;
     if group >= GROUPS {
         return;
     }
     let size = textureDimensions(hdr);
-    let stride = min(in.groups.x * in.groups.y, GROUPS) * LANES;
+    let stride = min(whole.groups.x * whole.groups.y, GROUPS) * LANES;
     var sum = vec2f(0.0);
     for (var i = group * LANES + in.lane; i < size.x * size.y; i += stride) {
         let color = textureLoad(hdr, vec2u(i % size.x, i / size.x), 0).rgb;
@@ -65,7 +66,7 @@ fn sum_texels(in: SumIn) {
 
 /// Dispatched as a single workgroup after `sum_texels`.
 @compute @workgroup_size(256)
-fn finish_mean(in: MeanIn) {
+fn finish_mean(in: LaneIn) {
     // A smaller frame than before leaves old sums behind the ones it wrote.
     let size = textureDimensions(hdr);
     let written = ((size.x + 15u) / 16u) * ((size.y + 15u) / 16u);
