@@ -18,6 +18,7 @@ pub enum Step<'a> {
 pub struct Locator {
     values: Vec<Value>,
     root: Option<usize>,
+    unclosed: Option<usize>,
 }
 
 #[derive(Clone, Debug)]
@@ -129,6 +130,7 @@ impl Locator {
                 Token::Close => {}
             }
         }
+        let unclosed = open.last().filter(|_| open.len() > 1).map(|bracket| bracket.start);
         // Brackets left open reach to the end of the text.
         while open.len() > 1 {
             let Some(mut unclosed) = open.pop() else { break };
@@ -147,7 +149,7 @@ impl Locator {
         }
         // Attributes (`#![enable(...)]`) come before, so that the last value is the one.
         let root = open.first().and_then(|file| file.last.as_ref()).map(|last| last.value);
-        Self { values, root }
+        Self { values, root, unclosed }
     }
 
     /// Place of the value at the end of the path, seen from the outermost value.
@@ -184,6 +186,17 @@ impl Locator {
             value = &self.values[next?.value];
         }
         Some(value)
+    }
+
+    /// Place of the outermost value that begins at this byte.
+    pub fn starting_at(&self, byte: usize) -> Option<Range<usize>> {
+        let here = self.values.iter().filter(|value| value.span.start == byte);
+        here.max_by_key(|value| value.span.end).map(|value| value.span.clone())
+    }
+
+    /// The byte at which the innermost bracket (or its name) stands that is never closed.
+    pub fn unclosed(&self) -> Option<usize> {
+        self.unclosed
     }
 
     /// Path of the innermost value that holds this byte, written for people: `slots.ndf.default[1]`.
