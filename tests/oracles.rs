@@ -14,7 +14,10 @@ use oracle::shadows::*;
 /// Asserts a relative difference.
 #[track_caller]
 fn near(got: f64, expected: f64, relative: f64) {
-    assert!((got - expected).abs() <= relative * expected.abs(), "got {got}, expected {expected}");
+    assert!(
+        (got - expected).abs() <= relative * expected.abs(),
+        "got {got}, expected {expected}"
+    );
 }
 
 fn deg(x: f64) -> f64 {
@@ -29,7 +32,10 @@ fn ggx_distribution() {
     near(ggx_d(0.007921, deg(0.5)), 1035.306447, 1e-9);
     near(ggx_d(1e-4, deg(0.01)), 1944289.756, 1e-9);
     for alpha in [0.05, 0.3, 1.0] {
-        let sum: f64 = nodes(0.0, FRAC_PI_2, 400).iter().map(|&(t, w)| 2.0 * PI * w * ggx_d(alpha, t) * t.cos() * t.sin()).sum();
+        let sum: f64 = nodes(0.0, FRAC_PI_2, 400)
+            .iter()
+            .map(|&(t, w)| 2.0 * PI * w * ggx_d(alpha, t) * t.cos() * t.sin())
+            .sum();
         near(sum, 1.0, 1e-9);
     }
 }
@@ -50,7 +56,10 @@ fn projected_area_is_conserved() {
     let theta = deg(85.0);
     let v = direction(theta, 0.0);
     let facets = hemisphere(200, 100);
-    let area: f64 = facets.iter().map(|(h, w)| w * ggx_g1(0.5, theta) * v.dot(*h).max(0.0) * ggx_d(0.5, angle(DVec3::Z, *h))).sum();
+    let area: f64 = facets
+        .iter()
+        .map(|(h, w)| w * ggx_g1(0.5, theta) * v.dot(*h).max(0.0) * ggx_d(0.5, angle(DVec3::Z, *h)))
+        .sum();
     near(area, 0.0871557427, 1e-5);
 }
 
@@ -62,13 +71,22 @@ fn fresnel() {
     let mean = |f: &dyn Fn(f64) -> f64| -> f64 { nodes(0.0, FRAC_PI_2, 100).iter().map(|&(t, w)| w * f(t) * (2.0 * t).sin()).sum() };
     near(mean(&|t| fresnel_dielectric(1.0, 1.5, t)), 0.091777959, 1e-7);
     near(mean(&|t| schlick(0.04, t.cos())), 0.085714286, 1e-8);
-    near(schlick(0.04, deg(85.0).cos()) - fresnel_dielectric(1.0, 1.5, deg(85.0)), 0.0357, 1e-2);
+    near(
+        schlick(0.04, deg(85.0).cos()) - fresnel_dielectric(1.0, 1.5, deg(85.0)),
+        0.0357,
+        1e-2,
+    );
 }
 
 /// The albedo of white facets at alpha 1 has a closed form: ties D, G and the 4 n.l n.v together.
 #[test]
 fn white_furnace() {
-    let s = Surface { normal: DVec3::Z, diffuse: 0.0, f0: 1.0, alpha: 1.0 };
+    let s = Surface {
+        normal: DVec3::Z,
+        diffuse: 0.0,
+        f0: 1.0,
+        alpha: 1.0,
+    };
     for (mu, expected) in [(1.0, 0.306852819), (0.5, 0.450693856), (0.1, 0.760210473)] {
         let v = direction(f64::acos(mu), 0.0);
         let albedo: f64 = hemisphere(60, 60).iter().map(|(l, w)| w * microfacet(&s, v, *l) * l.z).sum();
@@ -79,7 +97,12 @@ fn white_furnace() {
 
 #[test]
 fn microfacet_is_reciprocal_and_zero_below_the_horizon() {
-    let s = Surface { normal: DVec3::Z, diffuse: 0.3, f0: 0.04, alpha: 0.2 };
+    let s = Surface {
+        normal: DVec3::Z,
+        diffuse: 0.3,
+        f0: 0.04,
+        alpha: 0.2,
+    };
     let (v, l) = (direction(deg(70.0), 0.0), direction(deg(20.0), 2.0));
     near(microfacet(&s, v, l), microfacet(&s, l, v), 1e-14);
     assert_eq!(microfacet(&s, v, -l), 0.0);
@@ -96,7 +119,12 @@ fn light_falloff() {
     near(falloff(5.0, 0.0, 0.01), 0.04, 1e-12);
     near(falloff(0.001, 0.0, 0.01), 1e4, 1e-12);
     assert_eq!(falloff(11.0, 10.0, 0.01), 0.0);
-    let light = Point { position: DVec3::new(0.0, 3.0, 4.0), intensity: 100.0, range: 0.0, size: 0.01 };
+    let light = Point {
+        position: DVec3::new(0.0, 3.0, 4.0),
+        intensity: 100.0,
+        range: 0.0,
+        size: 0.01,
+    };
     near(point_illuminance(&light, DVec3::ZERO, DVec3::Z), 3.2, 1e-14);
     assert_eq!(point_illuminance(&light, DVec3::ZERO, DVec3::NEG_Z), 0.0);
     near(directional_illuminance(DVec3::new(0.0, 3.0, -4.0), 1000.0, DVec3::Z), 800.0, 1e-14);
@@ -154,8 +182,13 @@ fn cube_faces_agree_with_their_matrices() {
         near(clip.z / clip.w, perspective_depth(clip.w, 0.1, 10.0), 1e-12);
     }
     assert_eq!(seen, [true; 6]);
-    // One corner of +x from the specification's table: u grows toward -z, v toward -y.
+    // From the table of the Vulkan specification, "Cube Map Face Selection": (s, t) is (-z, -y), (z, -y), (x, z), (x, -z), (x, -y), (-x, -y).
     assert_eq!(cube_face(DVec3::new(1.0, 0.5, -0.5)), (0, 0.75, 0.25));
+    assert_eq!(cube_face(DVec3::new(-1.0, 0.5, -0.5)), (1, 0.25, 0.25));
+    assert_eq!(cube_face(DVec3::new(0.5, 1.0, 0.25)), (2, 0.75, 0.625));
+    assert_eq!(cube_face(DVec3::new(0.5, -1.0, 0.25)), (3, 0.75, 0.375));
+    assert_eq!(cube_face(DVec3::new(0.5, 0.25, 1.0)), (4, 0.75, 0.375));
+    assert_eq!(cube_face(DVec3::new(0.5, 0.25, -1.0)), (5, 0.25, 0.375));
 }
 
 #[test]

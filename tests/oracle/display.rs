@@ -26,17 +26,29 @@ pub fn reinhard_extended(l: f64, white: f64) -> f64 {
 pub fn reinhard_color(c: DVec3, white: f64) -> DVec3 {
     let c = c.max(DVec3::ZERO);
     let l = luminance(c);
-    if l == 0.0 { DVec3::ZERO } else { c * (reinhard_extended(l, white) / l) }
+    if l == 0.0 {
+        DVec3::ZERO
+    } else {
+        c * (reinhard_extended(l, white) / l)
+    }
 }
 
 /// IEC 61966-2-1:1999, linear to encoded.
 pub fn srgb_encode(c: f64) -> f64 {
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+    if c <= 0.003_130_8 {
+        12.92 * c
+    } else {
+        1.055 * c.powf(1.0 / 2.4) - 0.055
+    }
 }
 
 /// IEC 61966-2-1:1999, encoded to linear.
 pub fn srgb_decode(c: f64) -> f64 {
-    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    if c <= 0.040_45 {
+        c / 12.92
+    } else {
+        ((c + 0.055) / 1.055).powf(2.4)
+    }
 }
 
 /// Logarithmic mean of luminances. Reinhard et al. 2002, eq. 1, with the division inside the exponential.

@@ -17,7 +17,9 @@ pub fn nodes(a: f64, b: f64, panels: usize) -> Vec<(f64, f64)> {
     let half = (b - a) / (2 * panels) as f64;
     let panel = |i: usize| {
         let middle = a + half * (2 * i + 1) as f64;
-        GAUSS.iter().flat_map(move |&(x, w)| [(middle - half * x, half * w), (middle + half * x, half * w)])
+        GAUSS
+            .iter()
+            .flat_map(move |&(x, w)| [(middle - half * x, half * w), (middle + half * x, half * w)])
     };
     (0..panels).flat_map(panel).collect()
 }
