@@ -3,6 +3,7 @@
 pub mod catalog;
 pub mod diagnostics;
 pub mod emit;
+pub mod hash;
 pub mod library;
 pub mod limits;
 pub mod manifest;
