@@ -255,7 +255,16 @@ mod tests {
     #[test]
     fn declarations() {
         assert_eq!(wgsl("const a=b;".repeat(WGSL_DECLARATIONS)), "");
-        assert!(wgsl("const a=b;".repeat(WGSL_DECLARATIONS + 1)).starts_with("error[SW0706]: too many declarations"));
+        let expected = "\
+error[SW0706]: too many declarations in one file
+     --> m.wgsl:4097:10
+     |
+4097 | const a=b;
+     |          ^ one too many
+     |
+     = at most 4096 are taken
+";
+        assert_eq!(wgsl("const a=b;\n".repeat(WGSL_DECLARATIONS + 1)), expected);
     }
 
     proptest! {
