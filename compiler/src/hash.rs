@@ -392,6 +392,7 @@ mod tests {
             ("LIMIT: u32 = 4u", "LIMIT: u32 = 5u"),
             ("gain: f32 = 1.5", "gain: f32 = 1.25"),
             ("override gain", "@id(7) override gain"),
+            ("override gain", "override amount"),
             ("state: i32 = 3", "state: i32 = 4"),
             ("var<private> state", "var<workgroup> other_state: u32; var<private> state"),
             ("@binding(1) var picture", "@binding(7) var picture"),
@@ -446,6 +447,9 @@ mod tests {
                     changed = changed.replacen(to.0, to.1, 1);
                 }
             }
+            if to == "override amount" {
+                changed = changed.replace("z * gain", "z * amount");
+            }
             if let Some(same) = seen.insert(hash(&changed), to) {
                 panic!("`{from}` -> `{to}` has the hash of `{same}`");
             }
@@ -462,7 +466,7 @@ mod tests {
         );
     }
 
-    /// Catches lists whose ends run into each other.
+    /// Catches lists whose ends run into each other, and variants that are taken for each other.
     #[test]
     fn lists_are_delimited() {
         let feed = |value: &dyn Fn(&mut Feed)| {
@@ -473,5 +477,10 @@ mod tests {
         let lists: [Vec<Vec<u8>>; 4] = [vec![vec![1], vec![]], vec![vec![], vec![1]], vec![vec![1]], vec![vec![0, 1]]];
         let hashes: std::collections::HashSet<u128> = lists.iter().map(|list| feed(&|feed| list.serialize(feed).unwrap())).collect();
         assert_eq!(hashes.len(), 4);
+        let (ok, err): (Result<u8, u8>, Result<u8, u8>) = (Ok(1), Err(1));
+        assert_ne!(
+            feed(&|feed| ok.serialize(feed).unwrap()),
+            feed(&|feed| err.serialize(feed).unwrap())
+        );
     }
 }

@@ -248,6 +248,7 @@ mod tests {
         assert!(wgsl(chain(WGSL_EXPRESSION + 1)).starts_with("error[SW0702]: an expression"));
         assert_eq!(wgsl(chain(WGSL_EXPRESSION)), "");
         assert_eq!(wgsl(format!("fn f() {{ {} }}", "if a {} else {} ".repeat(2000))), "");
+        assert_eq!(wgsl("const a = f(1+1, b[1+1]);".repeat(WGSL_EXPRESSION)), "");
         assert_eq!(wgsl(format!("const t = array({});", "-1.5, ".repeat(5000))), "");
     }
 

@@ -64,7 +64,8 @@ fn all_targets() {
     let msl = text(SHADER, Target::Msl, None);
     for part in [
         "[[buffer(0)]]",
-        "[[buffer(1)]]",
+        "const& lights [[buffer(1)]]",
+        "& result [[buffer(2)]]",
         "colour [[texture(0)]]",
         "[[sampler(0)]]",
         "[[buffer(3)]]",
@@ -72,7 +73,7 @@ fn all_targets() {
     ] {
         assert!(msl.contains(part), "{part}:\n{msl}");
     }
-    assert!(!msl.contains("fake"), "{msl}");
+    assert!(!msl.contains("fake") && !msl.contains("const& result"), "{msl}");
     let glsl = text(SHADER, Target::Glsl, Some("fragment_main"));
     for part in [
         "#version 450",
