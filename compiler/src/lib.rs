@@ -12,6 +12,7 @@ pub mod library;
 pub mod limits;
 pub mod manifest;
 pub mod program;
+pub(crate) mod why;
 pub mod reflect;
 pub mod upstream;
 pub mod validate;
