@@ -87,7 +87,7 @@ fn aliases_do_not_make_equal_types_differ() {
     assert_forms_agree(&program);
     // Inside one module naga itself tells them apart: the author hears of it at the right place, with the way out.
     let error = library("Own").error(recipe);
-    assert!(error.contains("pass/run/run.wgsl:9:14") && error.contains("alias"), "{error}");
+    assert!(error.contains("pass/run/run.wgsl:10:14") && error.contains("alias"), "{error}");
 }
 
 /// Structs of one name in two modules are two structs, whatever is in them.
