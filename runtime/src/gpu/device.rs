@@ -184,12 +184,12 @@ impl Gpu {
         }
     }
 
-    /// Makes a buffer with these contents, padded with zeros to at least `size` bytes and a multiple of 16.
+    /// Makes a buffer with these contents, padded with zeros to at least `size` bytes and a multiple of 4.
     ///
     /// # Errors
     /// No memory, or larger than the device allows.
     pub fn buffer(&self, what: &str, usage: wgpu::BufferUsages, contents: &[u8], size: u64) -> Result<wgpu::Buffer, GpuError> {
-        let size = size.max(contents.len() as u64).max(16).next_multiple_of(16);
+        let size = size.max(contents.len() as u64).max(4).next_multiple_of(4);
         self.scoped(what, |device| {
             let buffer = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(what),

@@ -5,8 +5,12 @@ mod error;
 pub mod layout;
 pub mod pack;
 pub mod pipeline;
+mod probe;
+pub mod resources;
 #[cfg(test)]
 pub(crate) mod testing;
+mod value;
 
 pub use device::Gpu;
 pub use error::{DataError, GpuError, RuntimeError};
+pub use probe::{Names, evaluate, probe};

@@ -1,8 +1,9 @@
 //! Programs from WGSL text for the unit tests of this crate, reflected without the compiler.
 
+use indexmap::IndexMap;
 use naga::{ArraySize, ScalarKind, TypeInner};
 use shadewright_compiler::Validated;
-use shadewright_compiler::manifest::ResourceKind;
+use shadewright_compiler::manifest::{Param, ParamMode, ParamType, ResourceKind, Value};
 use shadewright_compiler::program::Program;
 use shadewright_compiler::reflect::{Binding, BindingType, EntryPoint, Fill, Layout, Member, Reflection, Stage, StageValue};
 
@@ -198,5 +199,19 @@ fn stage(stage: naga::ShaderStage) -> Stage {
         naga::ShaderStage::Vertex => Stage::Vertex,
         naga::ShaderStage::Fragment => Stage::Fragment,
         _ => Stage::Compute,
+    }
+}
+
+/// A scalar parameter without a unit.
+pub fn param(default: Value) -> Param {
+    Param {
+        ty: ParamType::F32,
+        unit: "1".into(),
+        also: IndexMap::new(),
+        default,
+        range: None,
+        doc: String::new(),
+        mode: ParamMode::Uniform,
+        role: None,
     }
 }
