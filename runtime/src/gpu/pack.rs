@@ -118,6 +118,22 @@ fn word(scalar: Scalar, number: f64) -> Option<[u8; 4]> {
     }
 }
 
+/// Writes the members of a struct that the host fills: `value` gives the numbers of each.
+///
+/// # Errors
+/// The struct has a member that the host does not know, or knows with another type.
+pub fn put_members(layout: &Layout, path: &str, bytes: &mut [u8], value: impl Fn(&str) -> Option<Vec<f64>>) -> Result<(), DataError> {
+    for member in &layout.members {
+        let path = format!("{path}.{}", member.name);
+        let numbers = value(&member.name).ok_or_else(|| DataError::new(&path, "is not known to the host"))?;
+        let rest = bytes
+            .get_mut(member.offset as usize..)
+            .ok_or_else(|| DataError::new(&path, "outside of its buffer"))?;
+        put_numbers(&member.layout, &numbers, &path, rest)?;
+    }
+    Ok(())
+}
+
 /// Writes a JSON value: structs as objects, vectors and arrays as arrays, matrices as arrays of columns. Members that an
 /// object leaves out have their default, else zero. `bytes` starts zeroed.
 ///
