@@ -4,9 +4,11 @@ pub mod catalog;
 pub mod diagnostics;
 pub mod emit;
 pub mod library;
+pub mod limits;
 pub mod manifest;
 pub mod program;
 pub mod reflect;
+pub mod upstream;
 pub mod validate;
 
 pub use catalog::{Catalog, Category, Module};
