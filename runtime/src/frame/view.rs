@@ -123,7 +123,13 @@ impl Eye {
     pub fn parallel(direction: Vec3, map: &MapSize) -> Self {
         let [right, up, forward] = axes(direction);
         let center = map.scene.center();
-        let extent = |axis: Vec3| map.scene.corners().iter().map(|c| (*c - center).dot(axis).abs()).fold(0.0, f32::max);
+        let extent = |axis: Vec3| {
+            map.scene
+                .corners()
+                .iter()
+                .map(|c| (*c - center).dot(axis).abs())
+                .fold(0.0, f32::max)
+        };
         let texels = map.texels as f32;
         let half = extent(right).max(extent(up)).max(1e-6) * texels / (texels - 2.0).max(1.0);
         let depth = extent(forward).max(1e-6) * 1.001;
@@ -218,7 +224,10 @@ mod tests {
             let (face, s, t) = select(d);
             let clip = eyes[face].view_projection * (position + d * 0.9).extend(1.0);
             let ndc = clip.truncate() / clip.w;
-            assert!((ndc.x * 0.5 + 0.5 - s).abs() < 1e-5 && (0.5 - ndc.y * 0.5 - t).abs() < 1e-5, "{d} {ndc} {s} {t}");
+            assert!(
+                (ndc.x * 0.5 + 0.5 - s).abs() < 1e-5 && (0.5 - ndc.y * 0.5 - t).abs() < 1e-5,
+                "{d} {ndc} {s} {t}"
+            );
             assert!((0.0..=1.0).contains(&ndc.z));
         }
     }
@@ -230,7 +239,10 @@ mod tests {
             let eye = Eye::parallel(direction, &map());
             for corner in map().scene.corners() {
                 let clip = eye.view_projection * corner.extend(1.0);
-                assert!(clip.x.abs() < 1.0 && clip.y.abs() < 1.0 && (0.0..=1.0).contains(&clip.z) && clip.w == 1.0, "{clip}");
+                assert!(
+                    clip.x.abs() < 1.0 && clip.y.abs() < 1.0 && (0.0..=1.0).contains(&clip.z) && clip.w == 1.0,
+                    "{clip}"
+                );
             }
             assert!(eye.sees(&map().scene));
         }
@@ -247,7 +259,13 @@ mod tests {
         assert!(at(Vec3::new(0.0, 5.0 - 0.004, 0.0)).z.abs() < 1e-3);
         assert!((at(Vec3::new(0.0, 1.0, 0.0)).z - 1.0).abs() < 1e-5);
         let edge = at(Vec3::new(1.0, 3.0, 0.0));
-        assert!((edge.x.abs().max(edge.y.abs()) - 1.0).abs() < 1e-5, "1 m aside at 2 m is the edge: {edge}");
-        assert!(!eye.sees(&Bounds { min: Vec3::splat(6.0), max: Vec3::splat(7.0) }));
+        assert!(
+            (edge.x.abs().max(edge.y.abs()) - 1.0).abs() < 1e-5,
+            "1 m aside at 2 m is the edge: {edge}"
+        );
+        assert!(!eye.sees(&Bounds {
+            min: Vec3::splat(6.0),
+            max: Vec3::splat(7.0)
+        }));
     }
 }

@@ -9,8 +9,9 @@ mod probe;
 pub mod resources;
 #[cfg(test)]
 pub(crate) mod testing;
-mod value;
+pub(crate) mod value;
 
 pub use device::Gpu;
+pub(crate) use device::lock;
 pub use error::{DataError, GpuError, RuntimeError};
 pub use probe::{Names, evaluate, probe};

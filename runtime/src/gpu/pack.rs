@@ -2,6 +2,7 @@
 
 use indexmap::IndexMap;
 use serde_json::Value as Json;
+use shadewright_compiler::diagnostics::nearest;
 use shadewright_compiler::manifest::Value;
 use shadewright_compiler::reflect::Layout;
 
@@ -208,13 +209,8 @@ fn pack_struct(layout: &Layout, value: &Json, path: &str, defaults: &Defaults, b
 /// An error that names the nearest of the names that exist.
 pub(crate) fn unknown<'a>(name: &str, kind: &str, of: &str, names: impl Iterator<Item = &'a str>, path: &str) -> DataError {
     let names: Vec<_> = names.collect();
-    let nearest = names
-        .iter()
-        .map(|n| (strsim::damerau_levenshtein(name, n), *n))
-        .min()
-        .filter(|(distance, _)| *distance <= name.len().max(3) / 2);
-    let hint = match nearest {
-        Some((_, nearest)) => format!("; did you mean `{nearest}`?"),
+    let hint = match nearest(name, names.iter().copied()) {
+        Some(nearest) => format!("; did you mean `{nearest}`?"),
         None if names.is_empty() => "; there are none".to_owned(),
         None => format!("; there are {}", names.join(", ")),
     };

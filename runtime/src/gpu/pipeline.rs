@@ -264,7 +264,11 @@ impl Pipelines {
                 },
                 primitive: wgpu::PrimitiveState {
                     cull_mode: state.cull_back.then_some(wgpu::Face::Back),
-                    front_face: if state.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+                    front_face: if state.mirrored {
+                        wgpu::FrontFace::Cw
+                    } else {
+                        wgpu::FrontFace::Ccw
+                    },
                     ..Default::default()
                 },
                 depth_stencil: state.depth.map(|format| wgpu::DepthStencilState {

@@ -404,7 +404,7 @@ mod tests {
             ]),
         });
         Program::from_parts(
-            shadewright_compiler::Validated::of(program.validated().module().clone()).unwrap(),
+            shadewright_compiler::validate::validate(program.validated().module().clone()).unwrap(),
             reflection,
             program.hash(),
             String::new(),
@@ -462,7 +462,7 @@ mod tests {
         );
         assert_eq!(
             fail(json!({"v": [0, 0, 1], "k": 0, "params": {"scale": [1, 2]}})),
-            "m.scale: expected 1 components, found 2"
+            "m.scale: expected a number, found 2 numbers"
         );
         assert_eq!(
             fail(json!({"v": [0, 0, 1], "k": 0, "instances": [{"powr": 1}]})),

@@ -2,7 +2,6 @@
 
 use indexmap::IndexMap;
 use naga::{ArraySize, ScalarKind, TypeInner};
-use shadewright_compiler::Validated;
 use shadewright_compiler::manifest::{Param, ParamMode, ParamType, ResourceKind, Value};
 use shadewright_compiler::program::Program;
 use shadewright_compiler::reflect::{Binding, BindingType, EntryPoint, Fill, Layout, Member, Reflection, Stage, StageValue};
@@ -191,7 +190,12 @@ pub fn program(source: &str, fill: impl Fn(&str) -> Option<Fill>) -> Program {
         capabilities: vec![],
         passes: vec![],
     };
-    Program::from_parts(Validated::of(module).unwrap(), reflection, hash, source.into())
+    Program::from_parts(
+        shadewright_compiler::validate::validate(module).unwrap(),
+        reflection,
+        hash,
+        source.into(),
+    )
 }
 
 fn stage(stage: naga::ShaderStage) -> Stage {
