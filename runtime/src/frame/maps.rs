@@ -181,6 +181,13 @@ pub(crate) fn maps_of(
         let no_light = || DataError::new(of, format!("pass `{name}` draws a shadow map, but there is no light above it"));
         let at = instance(reflection, of).ok_or_else(no_light)?;
         let (light, rest) = light_above(reflection, at).ok_or_else(no_light)?;
+        if let Some(path) = at.paths.iter().find(|p| !light.paths.iter().any(|l| rest_of(p, l).is_some())) {
+            let message = format!(
+                "stands below `{}` and at {path}, but a shadow map belongs to one kind of light; label one of the two",
+                light.name
+            );
+            return Err(DataError::new(of, message).into());
+        }
         let lights = lights_of(programs, frame, root, light)?;
         let key = (text_of(&lights.node), rest, name.clone());
         let map = match maps.iter().position(|m| m.key == key) {
