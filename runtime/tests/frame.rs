@@ -37,7 +37,9 @@ fn vector(v: Vec3) -> Value {
 
 /// The lights of the first material's list, in its order.
 fn lights(of: &Material, instances: Vec<Vec<IndexMap<String, Value>>>) -> Vec<Lights> {
-    let Some(Filling::Many(nodes)) = of.recipe.fill.get("lights") else { panic!("no list of lights") };
+    let Some(Filling::Many(nodes)) = of.recipe.fill.get("lights") else {
+        panic!("no list of lights")
+    };
     assert_eq!(nodes.len(), instances.len());
     let pairs = nodes.iter().cloned().zip(instances);
     pairs.map(|(node, instances)| Lights { node, instances }).collect()
@@ -134,7 +136,10 @@ fn lambert_plane_under_a_point_light_is_the_closed_form() {
             for (channel, albedo) in albedo.iter().enumerate() {
                 let expected = albedo / std::f64::consts::PI * illuminance;
                 let found = f64::from(image[(row * SIDE + column) as usize][channel]);
-                assert!((found / expected - 1.0).abs() < 1e-4, "{column} {row} {channel}: {found}, not {expected}");
+                assert!(
+                    (found / expected - 1.0).abs() < 1e-4,
+                    "{column} {row} {channel}: {found}, not {expected}"
+                );
             }
         }
     }
@@ -151,9 +156,16 @@ fn passes_tile(ground: Vec3, toward: Vec3, tile: Vec3, half: f32) -> f32 {
 #[test]
 fn shadows_fall_where_geometry_says() {
     let material = material(SHADOWED);
-    let lamps = [(Vec3::new(0.0, 3.0, 0.0), 900.0), (Vec3::new(0.0, 3.0, 3.5), 500.0), (Vec3::new(-3.0, 2.0, 3.0), 200.0)];
+    let lamps = [
+        (Vec3::new(0.0, 3.0, 0.0), 900.0),
+        (Vec3::new(0.0, 3.0, 3.5), 500.0),
+        (Vec3::new(-2.0, 4.0, 3.0), 200.0),
+    ];
     let suns = [(Vec3::new(-1.0, -1.0, 0.0), 50.0), (Vec3::new(0.0, -1.0, -1.2), 70.0)];
-    let kinds = vec![lamps.map(|(at, cd)| point(at, cd)).to_vec(), suns.map(|(to, lux)| sun(to, lux)).to_vec()];
+    let kinds = vec![
+        lamps.map(|(at, cd)| point(at, cd)).to_vec(),
+        suns.map(|(to, lux)| sun(to, lux)).to_vec(),
+    ];
     let lights = lights(&material, kinds);
     let (tile, half) = (Vec3::new(1.0, 1.5, 0.5), 0.5);
     let draws = vec![draw(&square(6.0), Vec3::ZERO), draw(&square(half), tile)];
@@ -176,13 +188,19 @@ fn shadows_fall_where_geometry_says() {
             let sum: f64 = parts.iter().zip(lit).filter(|(_, lit)| *lit).map(|(part, _)| part).sum();
             let expected = 0.8 / std::f64::consts::PI * sum;
             let found = f64::from(texel[0]);
-            assert!((found / expected - 1.0).abs() < 1e-3, "{ground}: {found}, not {expected}, lit by {lit:?}");
+            assert!(
+                (found / expected - 1.0).abs() < 1e-3,
+                "{ground}: {found}, not {expected}, lit by {lit:?}"
+            );
             compared += 1;
             for (count, lit) in dark.iter_mut().zip(lit) {
                 *count += usize::from(!lit);
             }
         }
-        assert!(compared > 2000 && dark.iter().all(|n| (*n > 20) == casts), "{compared} texels, {dark:?} in shadow");
+        assert!(
+            compared > 2000 && dark.iter().all(|n| (*n > 20) == casts),
+            "{compared} texels, {dark:?} in shadow"
+        );
     }
 }
 
@@ -217,7 +235,10 @@ fn log_average_exposes_the_mean_to_the_key() {
 fn textures_belong_to_their_place() {
     let text = r#"(module: "forward", fill: {"material": (module: "metalness", fill: {"emission_map": "color-texture"})})"#;
     let mut material = material(text);
-    material.settings.params.insert("main.material".into(), numbers(&[("emission", Value::Number(2.0))]));
+    material
+        .settings
+        .params
+        .insert("main.material".into(), numbers(&[("emission", Value::Number(2.0))]));
     let halves = Texture {
         width: 2,
         height: 2,

@@ -18,7 +18,11 @@ pub fn gpu() -> Gpu {
 /// Layout of a global variable's type.
 pub fn layout_of(source: &str, global: &str) -> Layout {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
-    let (_, var) = module.global_variables.iter().find(|(_, v)| v.name.as_deref() == Some(global)).unwrap();
+    let (_, var) = module
+        .global_variables
+        .iter()
+        .find(|(_, v)| v.name.as_deref() == Some(global))
+        .unwrap();
     Layouts::new(&module).unwrap().of(var.ty)
 }
 
@@ -48,7 +52,10 @@ pub fn catalog(files: &[(&str, &str)]) -> Arc<Catalog> {
 
 /// Links a pass of which the WGSL is given, without slots.
 pub fn pass(wgsl: &str) -> Program {
-    let catalog = catalog(&[("pass/tested/module.ron", "(summary: \"tested\")"), ("pass/tested/tested.wgsl", wgsl)]);
+    let catalog = catalog(&[
+        ("pass/tested/module.ron", "(summary: \"tested\")"),
+        ("pass/tested/tested.wgsl", wgsl),
+    ]);
     let recipe = Recipe::parse("test", "\"tested\"").unwrap();
     catalog.compile(&recipe, "main").unwrap_or_else(|e| panic!("{e}"))
 }
