@@ -1,5 +1,7 @@
 //! Frames of the standard library, from recipes to pixels.
 
+#![allow(clippy::unwrap_used)]
+
 use std::sync::{Arc, LazyLock};
 
 use glam::{Mat4, Vec3};

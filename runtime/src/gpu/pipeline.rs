@@ -70,10 +70,13 @@ struct Key<S> {
     state: S,
 }
 
+/// A value that is made once.
+type Cell<V> = Arc<Mutex<Option<Arc<V>>>>;
+
 /// A map whose values are made at most once each; threads that want the same one wait for the first.
 #[derive(Debug)]
 struct Kept<K, V> {
-    cells: Mutex<HashMap<K, Arc<Mutex<Option<Arc<V>>>>>>,
+    cells: Mutex<HashMap<K, Cell<V>>>,
     hits: AtomicUsize,
     misses: AtomicUsize,
 }
