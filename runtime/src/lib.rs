@@ -1,1 +1,3 @@
-//! x
+//! Executes linked shaders with wgpu, in physical units.
+
+pub mod frame;
