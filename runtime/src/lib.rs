@@ -1,3 +1,5 @@
 //! Executes linked shaders with wgpu, in physical units.
 
 pub mod frame;
+pub mod image;
+pub mod mesh;

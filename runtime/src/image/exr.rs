@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use exr::meta::attribute::{AttributeValue, Text};
+use exr::meta::attribute::Text;
 use exr::prelude::*;
 
 use super::{Hdr, ImageError, check_limits, check_size};
@@ -24,14 +24,16 @@ pub fn encode_exr(picture: &Hdr) -> std::result::Result<Vec<u8>, ImageError> {
         compression: Compression::ZIP16,
         ..Encoding::SMALL_LOSSLESS
     };
-    let mut layer = Layer::new((picture.width as usize, picture.height as usize), LayerAttributes::default(), encoding, channels);
+    let mut layer = Layer::new(
+        (picture.width as usize, picture.height as usize),
+        LayerAttributes::default(),
+        encoding,
+        channels,
+    );
     layer.attributes.software_name = Some(Text::from("shadewright"));
     layer.attributes.white_luminance = Some(1.0);
-    for (name, value) in &picture.attributes {
-        if let (Some(name), Some(value)) = (Text::new_or_none(name), Text::new_or_none(value)) {
-            layer.attributes.other.insert(name, AttributeValue::Text(value));
-        }
-    }
+    // The one text: the crate keeps attributes of other names in a hash map, and equal pictures must give equal bytes.
+    layer.attributes.comments = Text::new_or_none(&picture.comment);
     let mut image = Image::from_layer(layer);
     image.attributes.chromaticities = Some(attribute::Chromaticities {
         red: Vec2(0.64, 0.33),
@@ -66,7 +68,7 @@ pub fn decode_exr(bytes: &[u8]) -> std::result::Result<Hdr, ImageError> {
                 width: size.width() as u32,
                 height: size.height() as u32,
                 texels: vec![[0.0; 4]; size.width() * size.height()],
-                attributes: Vec::new(),
+                comment: String::new(),
             },
             |picture: &mut Hdr, at, (r, g, b, a): (f32, f32, f32, f32)| {
                 let width = picture.width as usize;
@@ -80,12 +82,9 @@ pub fn decode_exr(bytes: &[u8]) -> std::result::Result<Hdr, ImageError> {
         .map_err(failed)?;
     let layer = image.layer_data;
     let mut picture = layer.channel_data.pixels;
-    for (name, value) in &layer.attributes.other {
-        if let AttributeValue::Text(text) = value {
-            picture.attributes.push((name.to_string(), text.to_string()));
-        }
+    if let Some(comment) = &layer.attributes.comments {
+        picture.comment = comment.to_string();
     }
-    picture.attributes.sort();
     Ok(picture)
 }
 
@@ -105,11 +104,11 @@ mod tests {
                 [f32::MIN_POSITIVE, f32::MAX, 0.5, 1.0],
                 [9.0, 8.0, 7.0, 6.0],
             ],
-            attributes: vec![("recipe".to_owned(), "0123456789abcdef".to_owned()), ("unit".to_owned(), "cd/m2".to_owned())],
+            comment: "recipe 0123456789abcdef, cd/m2".to_owned(),
         }
     }
 
-    /// Catches half floats (65504 and pi would change), swapped rows or channels, and lost attributes.
+    /// Catches half floats (65504 and pi would change), swapped rows or channels, and a lost comment.
     #[test]
     fn round_trip_is_exact() {
         let picture = sample();

@@ -1,6 +1,6 @@
 //! Smaller levels of textures.
 
-use crate::frame::description::Texture;
+use crate::frame::Texture;
 
 /// sRGB code value in [0, 1] to linear (IEC 61966-2-1).
 pub fn srgb_to_linear(c: f32) -> f32 {
@@ -9,7 +9,11 @@ pub fn srgb_to_linear(c: f32) -> f32 {
 
 /// Linear value in [0, 1] to sRGB code value (IEC 61966-2-1).
 pub fn linear_to_srgb(c: f32) -> f32 {
-    if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+    if c <= 0.003_130_8 {
+        c * 12.92
+    } else {
+        1.055 * c.powf(1.0 / 2.4) - 0.055
+    }
 }
 
 /// All levels of a texture, the given one first, down to one texel; each side is half of the one before, rounded down, as GPUs have it.
@@ -112,10 +116,24 @@ mod tests {
     #[test]
     fn odd_sides_keep_their_mean() {
         let levels = mip_levels(&grey(3, 5, &[0, 0, 90, 0, 0, 90, 0, 0, 90, 0, 0, 90, 0, 0, 90]), false);
-        assert_eq!(levels.iter().map(|l| (l.width, l.height)).collect::<Vec<_>>(), [(3, 5), (1, 2), (1, 1)]);
+        assert_eq!(
+            levels.iter().map(|l| (l.width, l.height)).collect::<Vec<_>>(),
+            [(3, 5), (1, 2), (1, 1)]
+        );
         assert!(levels[1].rgba.iter().chain(&levels[2].rgba).all(|&c| c == 30));
         // A damaged texture is handed on for whoever uploads it to refuse.
-        assert_eq!(mip_levels(&Texture { width: 2, height: 2, rgba: vec![0; 3] }, true).len(), 1);
+        assert_eq!(
+            mip_levels(
+                &Texture {
+                    width: 2,
+                    height: 2,
+                    rgba: vec![0; 3]
+                },
+                true
+            )
+            .len(),
+            1
+        );
     }
 
     /// Oracle values: code .5 is linear .214041140, linear .18 is code .461356130.

@@ -24,8 +24,8 @@ pub struct Hdr {
     pub height: u32,
     /// Linear Rec.709 radiance in cd/m2 per channel, and coverage in [0, 1]; `width * height` of them.
     pub texels: Vec<[f32; 4]>,
-    /// Said about the picture, written as text attributes of the file.
-    pub attributes: Vec<(String, String)>,
+    /// Said about the picture; the file's `comments`.
+    pub comment: String,
 }
 
 /// Why a picture cannot be read or written.

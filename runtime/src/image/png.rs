@@ -5,7 +5,7 @@ use std::io::Cursor;
 use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits};
 
 use super::{ImageError, MAX_SIDE, check_limits, check_size};
-use crate::frame::description::Texture;
+use crate::frame::Texture;
 
 /// Encodes sRGB-encoded RGBA bytes, rows from the top, as PNG.
 ///

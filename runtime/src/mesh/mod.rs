@@ -10,7 +10,7 @@ pub mod teapot;
 pub use attributes::{flat_normals, generate_tangents, smooth_normals};
 pub use primitives::{MAX_SEGMENTS, Primitive};
 
-pub use crate::frame::description::{Bounds, Mesh};
+pub use crate::frame::{Bounds, Mesh};
 use glam::Vec3;
 
 /// Most vertices that one mesh may have. It keeps a slip of the pen in a scene from taking all memory.

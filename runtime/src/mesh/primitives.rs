@@ -1,6 +1,6 @@
 //! Simple bodies around the origin, sizes in metres.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
@@ -144,7 +144,11 @@ impl Primitive {
                 }
             }
             Self::Sphere { radius, segments, rings } => {
-                let (r, nu, nv) = (length("radius", radius)?, count("segments", segments, 3)?, count("rings", rings, 2)?);
+                let (r, nu, nv) = (
+                    length("radius", radius)?,
+                    count("segments", segments, 3)?,
+                    count("rings", rings, 2)?,
+                );
                 turned(&mut mesh, nu, nv, |v| {
                     let n = arc(v * 0.5);
                     // The profile starts at the north pole: x is the distance from the axis.
@@ -153,13 +157,21 @@ impl Primitive {
                 });
             }
             Self::Cylinder { radius, height, segments } => {
-                let (r, h, nu) = (length("radius", radius)?, length("height", height)?, count("segments", segments, 3)?);
+                let (r, h, nu) = (
+                    length("radius", radius)?,
+                    length("height", height)?,
+                    count("segments", segments, 3)?,
+                );
                 turned(&mut mesh, nu, 1, |v| (Vec2::new(r, h * (0.5 - v)), Vec2::X));
                 turned(&mut mesh, nu, 1, |v| (Vec2::new(r * v, h * 0.5), Vec2::Y));
                 turned(&mut mesh, nu, 1, |v| (Vec2::new(r * (1.0 - v), h * -0.5), Vec2::NEG_Y));
             }
             Self::Cone { radius, height, segments } => {
-                let (r, h, nu) = (length("radius", radius)?, length("height", height)?, count("segments", segments, 3)?);
+                let (r, h, nu) = (
+                    length("radius", radius)?,
+                    length("height", height)?,
+                    count("segments", segments, 3)?,
+                );
                 let slope = Vec2::new(h, r).normalize();
                 turned(&mut mesh, nu, 1, |v| (Vec2::new(r * v, h * (0.5 - v)), slope));
                 turned(&mut mesh, nu, 1, |v| (Vec2::new(r * (1.0 - v), h * -0.5), Vec2::NEG_Y));
@@ -258,18 +270,60 @@ fn push_triangle(mesh: &mut Mesh, t: [u32; 3]) {
 
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::TAU;
+
     use super::*;
 
     fn all() -> Vec<(Primitive, f32, f32)> {
         let (r, h, t) = (0.5, 0.8, 0.2);
         vec![
             // Area and volume in closed form.
-            (Primitive::Plane { size: [2.0, 3.0], segments: [3, 5] }, 6.0, 0.0),
+            (
+                Primitive::Plane {
+                    size: [2.0, 3.0],
+                    segments: [3, 5],
+                },
+                6.0,
+                0.0,
+            ),
             (Primitive::Box { size: [1.0, 2.0, 3.0] }, 22.0, 6.0),
-            (Primitive::Sphere { radius: r, segments: 128, rings: 64 }, 4.0 * PI * r * r, 4.0 / 3.0 * PI * r * r * r),
-            (Primitive::Cylinder { radius: r, height: h, segments: 256 }, TAU * r * (h + r), PI * r * r * h),
-            (Primitive::Cone { radius: r, height: h, segments: 256 }, PI * r * (r + r.hypot(h)), PI * r * r * h / 3.0),
-            (Primitive::Torus { radius: r, tube: t, segments: 128, rings: 64 }, TAU * r * TAU * t, TAU * r * PI * t * t),
+            (
+                Primitive::Sphere {
+                    radius: r,
+                    segments: 128,
+                    rings: 64,
+                },
+                4.0 * PI * r * r,
+                4.0 / 3.0 * PI * r * r * r,
+            ),
+            (
+                Primitive::Cylinder {
+                    radius: r,
+                    height: h,
+                    segments: 256,
+                },
+                TAU * r * (h + r),
+                PI * r * r * h,
+            ),
+            (
+                Primitive::Cone {
+                    radius: r,
+                    height: h,
+                    segments: 256,
+                },
+                PI * r * (r + r.hypot(h)),
+                PI * r * r * h / 3.0,
+            ),
+            (
+                Primitive::Torus {
+                    radius: r,
+                    tube: t,
+                    segments: 128,
+                    rings: 64,
+                },
+                TAU * r * TAU * t,
+                TAU * r * PI * t * t,
+            ),
         ]
     }
 
@@ -291,7 +345,10 @@ mod tests {
                 }
             }
             assert!((a / area - 1.0).abs() < 2e-3, "{primitive:?}: area {a}, not {area}");
-            assert!((v - volume).abs() < 3e-3 * volume.max(1e-3), "{primitive:?}: volume {v}, not {volume}");
+            assert!(
+                (v - volume).abs() < 3e-3 * volume.max(1e-3),
+                "{primitive:?}: volume {v}, not {volume}"
+            );
         }
     }
 
@@ -304,16 +361,30 @@ mod tests {
                 assert_eq!(t[3], 1.0, "{primitive:?}");
             }
         }
-        let plane = Primitive::Plane { size: [1.0, 1.0], segments: [1, 1] }.build().unwrap();
+        let plane = Primitive::Plane {
+            size: [1.0, 1.0],
+            segments: [1, 1],
+        }
+        .build()
+        .unwrap();
         assert!(plane.tangents.iter().all(|t| t[..3] == [1.0, 0.0, 0.0]));
     }
 
     /// Catches one shared pole vertex, whose u would swirl the texture around the pole.
     #[test]
     fn poles_have_a_vertex_for_each_segment() {
-        let mesh = Primitive::Sphere { radius: 1.0, segments: 8, rings: 4 }.build().unwrap();
+        let mesh = Primitive::Sphere {
+            radius: 1.0,
+            segments: 8,
+            rings: 4,
+        }
+        .build()
+        .unwrap();
         assert_eq!(mesh.triangles(), 8 * 2 + 8 * 2 * 2);
-        let mut u: Vec<f32> = (0..mesh.positions.len()).filter(|&i| mesh.positions[i][1] == 1.0).map(|i| mesh.uvs[i][0]).collect();
+        let mut u: Vec<f32> = (0..mesh.positions.len())
+            .filter(|&i| mesh.positions[i][1] == 1.0)
+            .map(|i| mesh.uvs[i][0])
+            .collect();
         u.sort_by(f32::total_cmp);
         assert_eq!(u, (0..8).map(|i| (i as f32 + 0.5) / 8.0).collect::<Vec<_>>());
     }
@@ -321,13 +392,50 @@ mod tests {
     #[test]
     fn nonsense_is_an_error() {
         for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-            assert!(Primitive::Plane { size: [1.0, bad], segments: [1, 1] }.build().is_err());
+            assert!(
+                Primitive::Plane {
+                    size: [1.0, bad],
+                    segments: [1, 1]
+                }
+                .build()
+                .is_err()
+            );
             assert!(Primitive::Box { size: [1.0, bad, 1.0] }.build().is_err());
-            assert!(Primitive::Sphere { radius: bad, segments: 8, rings: 8 }.build().is_err());
-            assert!(Primitive::Torus { radius: 1.0, tube: bad, segments: 8, rings: 8 }.build().is_err());
+            assert!(
+                Primitive::Sphere {
+                    radius: bad,
+                    segments: 8,
+                    rings: 8
+                }
+                .build()
+                .is_err()
+            );
+            assert!(
+                Primitive::Torus {
+                    radius: 1.0,
+                    tube: bad,
+                    segments: 8,
+                    rings: 8
+                }
+                .build()
+                .is_err()
+            );
         }
-        let error = Primitive::Sphere { radius: 1.0, segments: 2, rings: 8 }.build().unwrap_err();
+        let error = Primitive::Sphere {
+            radius: 1.0,
+            segments: 2,
+            rings: 8,
+        }
+        .build()
+        .unwrap_err();
         assert_eq!(error.to_string(), "`segments` is 2, but must be between 3 and 1024");
-        assert!(Primitive::Plane { size: [1.0; 2], segments: [1, 100_000] }.build().is_err());
+        assert!(
+            Primitive::Plane {
+                size: [1.0; 2],
+                segments: [1, 100_000]
+            }
+            .build()
+            .is_err()
+        );
     }
 }

@@ -121,7 +121,10 @@ mod tests {
         let b = mesh.bounds().unwrap();
         let unit = 0.15 / 3.15;
         assert!(b.min.y.abs() < 1e-7 && (b.max.y - 0.15).abs() < 1e-7, "{b:?}");
-        assert!((b.max.x - 3.434 * unit).abs() < 0.005 && (b.min.x + 3.0 * unit).abs() < 0.005, "{b:?}");
+        assert!(
+            (b.max.x - 3.434 * unit).abs() < 0.005 && (b.min.x + 3.0 * unit).abs() < 0.005,
+            "{b:?}"
+        );
         assert!((b.max.z - 2.0 * unit).abs() < 1e-4 && (b.min.z + 2.0 * unit).abs() < 1e-4, "{b:?}");
         assert_eq!(mesh.triangles(), 32 * 2 * 8 * 8 - 8 * 8);
     }
