@@ -4,6 +4,7 @@
 //! also gives normals, tangents and texture coordinates, so that no later stage has to ask.
 
 mod attributes;
+pub mod gltf;
 mod primitives;
 pub mod teapot;
 
