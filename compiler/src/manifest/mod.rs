@@ -1,11 +1,19 @@
 //! RON text to declarations: categories, modules, recipes.
 
 mod category;
+mod load;
 mod module;
 mod recipe;
+mod spans;
+mod temperature;
+mod value;
 
 pub use category::{CategoryManifest, Combine};
+pub use load::{Parsed, parse, parse_category, parse_module, parse_recipe, ron_options};
 pub use module::{
     Among, Arity, Dispatch, Filling, ModuleManifest, Param, ParamMode, ParamType, PassDecl, Resource, ResourceKind, Rule, Slot, ViewKind,
 };
 pub use recipe::{Node, Value};
+pub use spans::{Locator, Step};
+pub use temperature::{KELVIN, black_body};
+pub use value::{Typed, ValueError, shortest, typed};
