@@ -33,6 +33,17 @@ pub struct Why {
 }
 
 impl Program {
+    /// A program from its parts, for tests of the crates that execute them.
+    #[doc(hidden)]
+    pub fn from_parts(validated: Validated, reflection: Reflection, hash: u128, wgsl: String) -> Self {
+        Self {
+            validated,
+            reflection,
+            hash,
+            wgsl,
+        }
+    }
+
     /// The validated module.
     pub fn validated(&self) -> &Validated {
         &self.validated
