@@ -9,10 +9,10 @@ mod primitives;
 pub mod teapot;
 
 pub use attributes::{flat_normals, generate_tangents, smooth_normals};
-pub use primitives::{MAX_SEGMENTS, Primitive};
+pub use primitives::{MAX_SEGMENTS, Shape};
 
 pub use crate::frame::{Bounds, Mesh};
-use glam::Vec3;
+use glam::{Mat3, Mat4, Vec3};
 
 /// Most vertices that one mesh may have. It keeps a slip of the pen in a scene from taking all memory.
 pub const MAX_VERTICES: usize = 16 << 20;
@@ -40,6 +40,12 @@ pub enum MeshError {
         /// Declared limit.
         most: u32,
     },
+    /// A file cannot be taken.
+    #[error(transparent)]
+    Gltf(#[from] gltf::GltfError),
+    /// A file has no mesh of this name.
+    #[error("the file has no mesh `{0}`")]
+    NoSuchMesh(String),
     /// The attribute lists differ in length, or an index points past their end.
     #[error("{0}")]
     Inconsistent(String),
@@ -54,6 +60,65 @@ impl Mesh {
     /// Number of triangles.
     pub fn triangles(&self) -> usize {
         self.indices.len() / 3
+    }
+
+    /// The mesh under a transform: the normals turn with the surface, and a transform that mirrors turns the triangles and the
+    /// bitangents around, so that the outside stays outside.
+    #[must_use]
+    pub fn transformed(&self, by: &Mat4) -> Self {
+        let linear = Mat3::from_mat4(*by);
+        let mirrors = linear.determinant() < 0.0;
+        // The cofactors are the transposed inverse but for a factor, and there where a scale is 0, too.
+        let normal = Mat3::from_cols(
+            linear.y_axis.cross(linear.z_axis),
+            linear.z_axis.cross(linear.x_axis),
+            linear.x_axis.cross(linear.y_axis),
+        ) * if mirrors { -1.0 } else { 1.0 };
+        let mut mesh = self.clone();
+        for i in 0..mesh.positions.len() {
+            mesh.positions[i] = by.transform_point3(self.positions[i].into()).to_array();
+            let n = (normal * Vec3::from(self.normals[i])).normalize_or(Vec3::Y);
+            let t = linear * Vec3::from_slice(&self.tangents[i]);
+            let t = (t - n * n.dot(t)).try_normalize().unwrap_or_else(|| n.any_orthonormal_vector());
+            mesh.normals[i] = n.to_array();
+            mesh.tangents[i] = [t.x, t.y, t.z, if mirrors { -self.tangents[i][3] } else { self.tangents[i][3] }];
+        }
+        if mirrors {
+            for triangle in mesh.indices.chunks_exact_mut(3) {
+                triangle.swap(1, 2);
+            }
+        }
+        mesh
+    }
+
+    /// The same triangles for a model matrix that mirrors: seen through it their outside is outside again.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let mut mesh = self.clone();
+        for triangle in mesh.indices.chunks_exact_mut(3) {
+            triangle.swap(1, 2);
+        }
+        for tangent in &mut mesh.tangents {
+            tangent[3] = -tangent[3];
+        }
+        mesh
+    }
+
+    /// Adds another mesh's triangles.
+    ///
+    /// # Errors
+    /// There would be more than [`MAX_VERTICES`].
+    pub fn append(&mut self, other: &Self) -> Result<(), MeshError> {
+        let first = self.positions.len();
+        if first + other.positions.len() > MAX_VERTICES {
+            return Err(MeshError::Inconsistent(format!("more than the limit of {MAX_VERTICES} vertices")));
+        }
+        self.positions.extend(&other.positions);
+        self.normals.extend(&other.normals);
+        self.tangents.extend(&other.tangents);
+        self.uvs.extend(&other.uvs);
+        self.indices.extend(other.indices.iter().map(|i| i + first as u32));
+        Ok(())
     }
 
     /// Checks what a renderer relies on: equal lengths, indices in range, finite numbers, unit normals and tangents.
@@ -96,5 +161,61 @@ impl Mesh {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches triangles, normals or bitangents that turn inside out under a mirror or a skewed scale.
+    #[test]
+    fn transforms_keep_the_outside() {
+        let sphere = Shape::Sphere { radius: 1.0, segments: 16, rings: 8 }
+            .build(|_| unreachable!())
+            .unwrap();
+        for scale in [Vec3::new(2.0, 0.5, 1.0), Vec3::new(-1.0, 1.0, 3.0), Vec3::new(-1.0, -1.0, -2.0)] {
+            let matrix = Mat4::from_rotation_z(0.3) * Mat4::from_scale(scale);
+            let moved = sphere.transformed(&matrix);
+            moved.check().unwrap();
+            for t in moved.indices.chunks_exact(3) {
+                let p = [0, 1, 2].map(|k| Vec3::from(moved.positions[t[k] as usize]));
+                let face = (p[1] - p[0]).cross(p[2] - p[0]);
+                assert!(face.dot(p[0] + p[1] + p[2]) > 0.0);
+                for &k in t {
+                    assert!(Vec3::from(moved.normals[k as usize]).dot(face) > 0.0);
+                }
+            }
+            // The bitangent of a point is that of the sphere, moved.
+            for i in (0..moved.positions.len()).step_by(7) {
+                let bitangent = |m: &Mesh| Vec3::from(m.normals[i]).cross(Vec3::from_slice(&m.tangents[i])) * m.tangents[i][3];
+                assert!(bitangent(&moved).dot(matrix.transform_vector3(bitangent(&sphere))) > 0.0);
+            }
+        }
+        let mut twice = sphere.clone();
+        twice.append(&sphere).unwrap();
+        twice.check().unwrap();
+        assert_eq!(twice.triangles(), 2 * sphere.triangles());
+        assert_ne!(twice.indices[0], twice.indices[sphere.indices.len()]);
+    }
+
+    /// Catches a check that lets a renderer read past an attribute's end or divide by a zero normal.
+    #[test]
+    fn broken_meshes_are_found() {
+        let good = Shape::Box { size: [1.0; 3] }.build(|_| unreachable!()).unwrap();
+        let breaks: [fn(&mut Mesh); 6] = [
+            |m| m.indices[0] = 9999,
+            |m| m.uvs.truncate(3),
+            |m| m.normals[2] = [0.0; 3],
+            |m| m.tangents[2][3] = 0.0,
+            |m| m.positions[0][1] = f32::NAN,
+            |m| m.indices.truncate(4),
+        ];
+        good.check().unwrap();
+        for (i, break_it) in breaks.iter().enumerate() {
+            let mut bad = good.clone();
+            break_it(&mut bad);
+            assert!(bad.check().is_err(), "break {i}");
+        }
     }
 }

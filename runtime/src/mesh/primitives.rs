@@ -2,18 +2,21 @@
 
 use std::f32::consts::PI;
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::gltf::{Asset, GltfError};
 use super::{Mesh, MeshError, generate_tangents, teapot};
 
 /// Most subdivisions along one direction.
 pub const MAX_SEGMENTS: u32 = 1024;
 
-/// A body that a few numbers describe.
+/// What a mesh is made of: a body that a few numbers describe, or a file.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub enum Primitive {
+pub enum Shape {
     /// Rectangle in the plane y = 0 that looks up.
     Plane {
         /// Along x and z, m.
@@ -79,6 +82,14 @@ pub enum Primitive {
         #[serde(default = "teapot_segments")]
         segments: u32,
     },
+    /// The triangles of a glTF file as they stand in its scene, joined; its materials, lights and cameras are left aside.
+    Gltf {
+        /// Path of the file.
+        file: String,
+        /// Only meshes of this name.
+        #[serde(default)]
+        mesh: Option<String>,
+    },
 }
 
 fn one_by_one() -> [u32; 2] {
@@ -115,14 +126,15 @@ fn count(name: &'static str, value: u32, least: u32) -> Result<u32, MeshError> {
     }
 }
 
-impl Primitive {
-    /// Makes the mesh, tangents included.
+impl Shape {
+    /// Makes the mesh, tangents included; `load` reads a glTF file.
     ///
     /// # Errors
-    /// A length is not positive, or a subdivision is out of its limits.
-    pub fn build(&self) -> Result<Mesh, MeshError> {
+    /// A length is not positive, a subdivision is out of its limits, or the file cannot be taken.
+    pub fn build(&self, load: impl FnOnce(&str) -> Result<Arc<Asset>, GltfError>) -> Result<Mesh, MeshError> {
         let mut mesh = Mesh::default();
         match *self {
+            Self::Gltf { ref file, mesh: ref name } => return load(file)?.joined(name.as_deref()),
             Self::Teapot { size, segments } => return teapot::teapot(size, segments),
             Self::Plane { size, segments } => {
                 let (x, z) = (length("size", size[0])?, length("size", size[1])?);
@@ -274,21 +286,25 @@ mod tests {
 
     use super::*;
 
-    fn all() -> Vec<(Primitive, f32, f32)> {
+    fn build(shape: &Shape) -> Result<Mesh, MeshError> {
+        shape.build(|_| unreachable!())
+    }
+
+    fn all() -> Vec<(Shape, f32, f32)> {
         let (r, h, t) = (0.5, 0.8, 0.2);
         vec![
             // Area and volume in closed form.
             (
-                Primitive::Plane {
+                Shape::Plane {
                     size: [2.0, 3.0],
                     segments: [3, 5],
                 },
                 6.0,
                 0.0,
             ),
-            (Primitive::Box { size: [1.0, 2.0, 3.0] }, 22.0, 6.0),
+            (Shape::Box { size: [1.0, 2.0, 3.0] }, 22.0, 6.0),
             (
-                Primitive::Sphere {
+                Shape::Sphere {
                     radius: r,
                     segments: 128,
                     rings: 64,
@@ -297,7 +313,7 @@ mod tests {
                 4.0 / 3.0 * PI * r * r * r,
             ),
             (
-                Primitive::Cylinder {
+                Shape::Cylinder {
                     radius: r,
                     height: h,
                     segments: 256,
@@ -306,7 +322,7 @@ mod tests {
                 PI * r * r * h,
             ),
             (
-                Primitive::Cone {
+                Shape::Cone {
                     radius: r,
                     height: h,
                     segments: 256,
@@ -315,7 +331,7 @@ mod tests {
                 PI * r * r * h / 3.0,
             ),
             (
-                Primitive::Torus {
+                Shape::Torus {
                     radius: r,
                     tube: t,
                     segments: 128,
@@ -331,7 +347,7 @@ mod tests {
     #[test]
     fn areas_volumes_and_normals() {
         for (primitive, area, volume) in all() {
-            let mesh = primitive.build().unwrap();
+            let mesh = build(&primitive).unwrap();
             mesh.check().unwrap();
             let (mut a, mut v) = (0.0, 0.0);
             for t in mesh.indices.chunks_exact(3) {
@@ -356,16 +372,16 @@ mod tests {
     #[test]
     fn textures_are_not_mirrored() {
         for (primitive, ..) in all() {
-            let mesh = primitive.build().unwrap();
+            let mesh = build(&primitive).unwrap();
             for t in &mesh.tangents {
                 assert_eq!(t[3], 1.0, "{primitive:?}");
             }
         }
-        let plane = Primitive::Plane {
+        let plane = Shape::Plane {
             size: [1.0, 1.0],
             segments: [1, 1],
         }
-        .build()
+        .build(|_| unreachable!())
         .unwrap();
         assert!(plane.tangents.iter().all(|t| t[..3] == [1.0, 0.0, 0.0]));
     }
@@ -373,12 +389,12 @@ mod tests {
     /// Catches one shared pole vertex, whose u would swirl the texture around the pole.
     #[test]
     fn poles_have_a_vertex_for_each_segment() {
-        let mesh = Primitive::Sphere {
+        let mesh = Shape::Sphere {
             radius: 1.0,
             segments: 8,
             rings: 4,
         }
-        .build()
+        .build(|_| unreachable!())
         .unwrap();
         assert_eq!(mesh.triangles(), 8 * 2 + 8 * 2 * 2);
         let mut u: Vec<f32> = (0..mesh.positions.len())
@@ -393,48 +409,48 @@ mod tests {
     fn nonsense_is_an_error() {
         for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
             assert!(
-                Primitive::Plane {
+                Shape::Plane {
                     size: [1.0, bad],
                     segments: [1, 1]
                 }
-                .build()
+                .build(|_| unreachable!())
                 .is_err()
             );
-            assert!(Primitive::Box { size: [1.0, bad, 1.0] }.build().is_err());
+            assert!(build(&Shape::Box { size: [1.0, bad, 1.0] }).is_err());
             assert!(
-                Primitive::Sphere {
+                Shape::Sphere {
                     radius: bad,
                     segments: 8,
                     rings: 8
                 }
-                .build()
+                .build(|_| unreachable!())
                 .is_err()
             );
             assert!(
-                Primitive::Torus {
+                Shape::Torus {
                     radius: 1.0,
                     tube: bad,
                     segments: 8,
                     rings: 8
                 }
-                .build()
+                .build(|_| unreachable!())
                 .is_err()
             );
         }
-        let error = Primitive::Sphere {
+        let error = Shape::Sphere {
             radius: 1.0,
             segments: 2,
             rings: 8,
         }
-        .build()
+        .build(|_| unreachable!())
         .unwrap_err();
         assert_eq!(error.to_string(), "`segments` is 2, but must be between 3 and 1024");
         assert!(
-            Primitive::Plane {
+            Shape::Plane {
                 size: [1.0; 2],
                 segments: [1, 100_000]
             }
-            .build()
+            .build(|_| unreachable!())
             .is_err()
         );
     }

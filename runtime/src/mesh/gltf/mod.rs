@@ -17,6 +17,7 @@ use glam::Mat4;
 use indexmap::IndexMap;
 use shadewright_compiler::manifest::Value;
 
+use super::MeshError;
 use crate::frame::{Mesh, Texture};
 
 /// Largest file that is read, bytes.
@@ -141,6 +142,25 @@ pub enum GltfError {
         /// What.
         thing: String,
     },
+}
+
+impl Asset {
+    /// All triangles as they stand in the scene, in one mesh; only of meshes of this name, if one is given.
+    ///
+    /// # Errors
+    /// There is none, or there are too many vertices.
+    pub fn joined(&self, name: Option<&str>) -> Result<Mesh, MeshError> {
+        let mut whole = Mesh::default();
+        for object in &self.objects {
+            if name.is_none_or(|name| object.mesh_name.as_deref() == Some(name)) {
+                whole.append(&object.mesh.transformed(&object.model))?;
+            }
+        }
+        if let (Some(name), true) = (name, whole.positions.is_empty()) {
+            return Err(MeshError::NoSuchMesh(name.to_owned()));
+        }
+        Ok(whole)
+    }
 }
 
 /// Reads a file and what it refers to.

@@ -121,6 +121,10 @@ fn reads_what_it_says() {
     assert_eq!(object.mesh.uvs, [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]]);
     assert_eq!(object.mesh.tangents[0], [1.0, 0.0, 0.0, 1.0]);
     assert_eq!(object.model.transform_point3(glam::Vec3::X), glam::Vec3::new(3.0, 2.0, 3.0));
+    let whole = asset.joined(Some("quad")).unwrap();
+    assert_eq!(whole.positions.len(), 10);
+    assert_eq!(whole.positions[1], [3.0, 2.0, 3.0]);
+    assert_eq!(asset.joined(Some("cube")), Err(MeshError::NoSuchMesh("cube".to_owned())));
     // Without normals: flat, so nothing is shared, and glTF's default material.
     asset.objects[1].mesh.check().unwrap();
     assert_eq!(asset.objects[1].mesh.positions.len(), 6);
