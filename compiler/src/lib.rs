@@ -1,6 +1,10 @@
 //! Links WGSL modules declared in RON into one validated naga module.
 
 pub mod catalog;
+mod link;
+mod parse;
+mod plan;
+mod resolve;
 pub mod diagnostics;
 pub mod emit;
 pub mod library;
@@ -8,6 +12,7 @@ pub mod limits;
 pub mod manifest;
 pub mod program;
 pub mod reflect;
+pub mod upstream;
 pub mod validate;
 
 pub use catalog::{Catalog, Category, Module};

@@ -1,0 +1,11 @@
+//! WGSL text to parsed units: each module alone, against stubs of what it calls.
+
+mod checks;
+mod compose;
+pub mod lex;
+pub mod scan;
+mod unit;
+
+pub use checks::same_signature;
+pub use compose::{Composed, Interface, Needs, Origin, SlotNeed, compose, constant_name, fields_struct, param_uses, typed_wgsl, wgsl_type};
+pub use unit::{StructKey, Unit, chain, check_interface, parse_unit};
