@@ -171,9 +171,13 @@ mod tests {
     /// Catches triangles, normals or bitangents that turn inside out under a mirror or a skewed scale.
     #[test]
     fn transforms_keep_the_outside() {
-        let sphere = Shape::Sphere { radius: 1.0, segments: 16, rings: 8 }
-            .build(|_| unreachable!())
-            .unwrap();
+        let sphere = Shape::Sphere {
+            radius: 1.0,
+            segments: 16,
+            rings: 8,
+        }
+        .build(|_| unreachable!())
+        .unwrap();
         for scale in [Vec3::new(2.0, 0.5, 1.0), Vec3::new(-1.0, 1.0, 3.0), Vec3::new(-1.0, -1.0, -2.0)] {
             let matrix = Mat4::from_rotation_z(0.3) * Mat4::from_scale(scale);
             let moved = sphere.transformed(&matrix);

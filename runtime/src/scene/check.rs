@@ -77,8 +77,18 @@ impl<'a> Examiner<'a> {
             return;
         }
         self.fill(&choice.fill, &module, &module.manifest.slots, &join(path, &[Step::Key("fill")]));
-        self.values(&choice.freeze, &module, &module.manifest.params, &join(path, &[Step::Key("freeze")]));
-        self.values(&choice.params, &module, &module.manifest.params, &join(path, &[Step::Key("params")]));
+        self.values(
+            &choice.freeze,
+            &module,
+            &module.manifest.params,
+            &join(path, &[Step::Key("freeze")]),
+        );
+        self.values(
+            &choice.params,
+            &module,
+            &module.manifest.params,
+            &join(path, &[Step::Key("params")]),
+        );
         for (name, picture) in &choice.textures {
             let at = join(path, &[Step::Key("textures"), Step::Key(name)]);
             let resources = &module.manifest.resources;
@@ -114,7 +124,12 @@ impl<'a> Examiner<'a> {
             };
             if slot.arity != Arity::List && choices.all().len() > 1 {
                 let n = choices.all().len();
-                self.error(&at, codes::TOO_MANY_FILLINGS, format!("the slot `{name}` takes one module"), format!("{n} modules"));
+                self.error(
+                    &at,
+                    codes::TOO_MANY_FILLINGS,
+                    format!("the slot `{name}` takes one module"),
+                    format!("{n} modules"),
+                );
                 continue;
             }
             match choices {

@@ -58,11 +58,21 @@ pub(super) fn derive(file: &SceneFile, catalog: &Catalog, size: Option<[u32; 2]>
     let size = size.unwrap_or(scene.size);
     if size.iter().any(|&side| side == 0 || side > MAX_SIZE) {
         let label = format!("both sides are between 1 and {MAX_SIZE}");
-        examiner.error(&[Step::Key("size")], codes::SCENE_INVALID, "a picture of this size cannot be made", label);
+        examiner.error(
+            &[Step::Key("size")],
+            codes::SCENE_INVALID,
+            "a picture of this size cannot be made",
+            label,
+        );
     }
     let background = Vec3::from(scene.background);
     if !background.is_finite() || background.min_element() < 0.0 {
-        examiner.error(&[Step::Key("background")], codes::SCENE_INVALID, "the background is no light", "cd/m2, not negative");
+        examiner.error(
+            &[Step::Key("background")],
+            codes::SCENE_INVALID,
+            "the background is no light",
+            "cd/m2, not negative",
+        );
     }
     let pass_path = [Step::Key("pass")];
     examiner.choice(&scene.pass, Some("pass"), &pass_path);
@@ -74,7 +84,12 @@ pub(super) fn derive(file: &SceneFile, catalog: &Catalog, size: Option<[u32; 2]>
     let (items, looks, mut lights) = gather(&mut examiner, &pass);
     let camera = camera(&mut examiner, size);
     if lights.len() > MAX_LIGHTS {
-        examiner.error(&[Step::Key("lights")], codes::SCENE_INVALID, format!("more than {MAX_LIGHTS} lights"), "too many");
+        examiner.error(
+            &[Step::Key("lights")],
+            codes::SCENE_INVALID,
+            format!("more than {MAX_LIGHTS} lights"),
+            "too many",
+        );
     }
     if !items.iter().any(|i| i.casts_shadow) {
         lights.iter_mut().for_each(|l| l.casts_shadow = false);
@@ -103,7 +118,9 @@ pub(super) fn derive(file: &SceneFile, catalog: &Catalog, size: Option<[u32; 2]>
             continue;
         };
         let mesh = if item.model.determinant() < 0.0 {
-            let mirror = mirrored.entry(Arc::as_ptr(&item.mesh)).or_insert_with(|| Arc::new(item.mesh.mirrored()));
+            let mirror = mirrored
+                .entry(Arc::as_ptr(&item.mesh))
+                .or_insert_with(|| Arc::new(item.mesh.mirrored()));
             Arc::clone(mirror)
         } else {
             Arc::clone(&item.mesh)
@@ -179,7 +196,13 @@ fn gather(examiner: &mut Examiner, pass: &Module) -> (Vec<Item>, Vec<Look>, Vec<
         let model = view::transform(examiner, &path, object.translate, object.rotate, object.scale);
         let mesh = meshes.get(object.mesh.as_str()).cloned();
         if mesh.is_none() && !scene.meshes.contains_key(&object.mesh) {
-            unknown(examiner, &join(&path, &[Step::Key("mesh")]), "mesh", &object.mesh, scene.meshes.keys());
+            unknown(
+                examiner,
+                &join(&path, &[Step::Key("mesh")]),
+                "mesh",
+                &object.mesh,
+                scene.meshes.keys(),
+            );
         }
         let look = scene.materials.get_index_of(&object.material);
         if look.is_none() {
@@ -221,7 +244,11 @@ fn include_file(
     let path = [Step::Key("gltf"), Step::Index(index)];
     examiner.fill(&decl.fill, pass, &pass.manifest.slots, &join(&path, &[Step::Key("fill")]));
     for (kind, choice) in &decl.visibility {
-        examiner.choice(choice, Some("visibility"), &join(&path, &[Step::Key("visibility"), Step::Key(kind)]));
+        examiner.choice(
+            choice,
+            Some("visibility"),
+            &join(&path, &[Step::Key("visibility"), Step::Key(kind)]),
+        );
     }
     let world = view::transform(examiner, &path, decl.translate, decl.rotate, decl.scale);
     let asset = match examiner.assets.gltf(&decl.file) {
@@ -360,7 +387,12 @@ fn camera(examiner: &mut Examiner, size: [u32; 2]) -> Option<crate::frame::Camer
         }
         return made;
     }
-    examiner.error(&[], codes::SCENE_INVALID, "the scene has no camera", "neither `camera` nor a glTF file with one");
+    examiner.error(
+        &[],
+        codes::SCENE_INVALID,
+        "the scene has no camera",
+        "neither `camera` nor a glTF file with one",
+    );
     None
 }
 

@@ -36,7 +36,11 @@ pub(super) fn representing(examiner: &mut Examiner, decl: &GltfDecl, thing: &str
         error.note(format!("a module whose manifest says `represents: [\"{thing}\"]` would draw it"))
     } else {
         let names: Vec<&str> = fitting.iter().map(|m| m.name.as_str()).collect();
-        error.note(format!("name one of {} under `modules`: {{\"{thing}\": \"{}\"}}", names.join(", "), names[0]))
+        error.note(format!(
+            "name one of {} under `modules`: {{\"{thing}\": \"{}\"}}",
+            names.join(", "),
+            names[0]
+        ))
     });
     None
 }
@@ -48,7 +52,11 @@ pub(super) fn material(examiner: &mut Examiner, decl: &GltfDecl, material: &Mate
     let mut choice = Choice::new(module.name.clone());
     let mut used: Vec<&str> = by_role(&mut choice, &module, &material.factors);
     for (name, texture) in &material.textures {
-        let slot = module.manifest.slots.iter().find_map(|(slot, s)| Some((slot, s.represents.get(*name)?)));
+        let slot = module
+            .manifest
+            .slots
+            .iter()
+            .find_map(|(slot, s)| Some((slot, s.represents.get(*name)?)));
         let Some((slot, filler)) = slot else {
             if *name == "gltf:occlusionTexture" {
                 // It darkens only what comes from all sides; light from lamps and the sun is not its business.
@@ -65,7 +73,11 @@ pub(super) fn material(examiner: &mut Examiner, decl: &GltfDecl, material: &Mate
         };
         let mut map = Choice::new(filler.name.clone());
         used.extend(by_role(&mut map, &filler, &material.factors));
-        let texture_of = filler.manifest.resources.iter().find(|(_, r)| matches!(r.kind, ResourceKind::Texture { .. }));
+        let texture_of = filler
+            .manifest
+            .resources
+            .iter()
+            .find(|(_, r)| matches!(r.kind, ResourceKind::Texture { .. }));
         if let Some((resource, _)) = texture_of {
             map.textures.insert(resource.clone(), Picture::Loaded(Arc::clone(texture)));
         }
@@ -79,9 +91,15 @@ pub(super) fn material(examiner: &mut Examiner, decl: &GltfDecl, material: &Mate
     }
     if let Alpha::Blend = material.alpha {
         log::debug!("`{}`: {place} is blended", decl.file);
-    } else if choice.params.iter().any(|(name, _)| role_of(&module, name) == Some("gltf:baseColorFactor.a")) {
+    } else if choice
+        .params
+        .iter()
+        .any(|(name, _)| role_of(&module, name) == Some("gltf:baseColorFactor.a"))
+    {
         // Without blending alpha means nothing.
-        choice.params.retain(|name, _| role_of(&module, name) != Some("gltf:baseColorFactor.a"));
+        choice
+            .params
+            .retain(|name, _| role_of(&module, name) != Some("gltf:baseColorFactor.a"));
     }
     Some((module, choice))
 }

@@ -6,7 +6,17 @@ use shadewright_compiler::diagnostics::{Diagnostic, SourceFile, codes};
 use shadewright_compiler::manifest::{Locator, Step, ron_options};
 
 /// Keys whose values are maps, which are written in braces and may be made where they are missing.
-const MAPS: [&str; 9] = ["params", "fields", "freeze", "fill", "textures", "visibility", "materials", "meshes", "modules"];
+const MAPS: [&str; 9] = [
+    "params",
+    "fields",
+    "freeze",
+    "fill",
+    "textures",
+    "visibility",
+    "materials",
+    "meshes",
+    "modules",
+];
 
 /// A step as written.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,16 +63,33 @@ pub fn set(name: &str, text: &str, path: &str, value: &str) -> Result<String, Di
         steps.pop();
         let around = places.find(&steps).unwrap_or(0..text.len());
         let Part::Key(key) = part else {
-            return Err(wrong(span.clone(), format!("`{path}` leads nowhere in `{name}`"), "there is no such element"));
+            return Err(wrong(
+                span.clone(),
+                format!("`{path}` leads nowhere in `{name}`"),
+                "there is no such element",
+            ));
         };
         let Some(rest) = nested(&parts[i + 1..], key, &value) else {
-            return Err(wrong(span.clone(), format!("`{path}` leads nowhere in `{name}`"), "there is no such field or entry"));
+            return Err(wrong(
+                span.clone(),
+                format!("`{path}` leads nowhere in `{name}`"),
+                "there is no such field or entry",
+            ));
         };
-        return insert(text, around, key, &rest)
-            .ok_or_else(|| wrong(span.clone(), format!("`{path}` leads nowhere in `{name}`"), "what is before this has no fields"));
+        return insert(text, around, key, &rest).ok_or_else(|| {
+            wrong(
+                span.clone(),
+                format!("`{path}` leads nowhere in `{name}`"),
+                "what is before this has no fields",
+            )
+        });
     }
     let Some(span) = places.find(&steps) else {
-        return Err(wrong(0..path.len(), format!("`{path}` leads nowhere in `{name}`"), "nothing is there"));
+        return Err(wrong(
+            0..path.len(),
+            format!("`{path}` leads nowhere in `{name}`"),
+            "nothing is there",
+        ));
     };
     Ok(format!("{}{value}{}", &text[..span.start], &text[span.end..]))
 }
@@ -151,7 +178,11 @@ fn quoted(key: &str) -> String {
 fn insert(text: &str, around: Range<usize>, key: &str, value: &str) -> Option<String> {
     let inside = &text[around.clone()];
     if inside.starts_with('"') {
-        return Some(format!("{}(module: {inside}, {key}: {value}){}", &text[..around.start], &text[around.end..]));
+        return Some(format!(
+            "{}(module: {inside}, {key}: {value}){}",
+            &text[..around.start],
+            &text[around.end..]
+        ));
     }
     let open = around.start + inside.find(['(', '{', '['])?;
     let entry = match text.as_bytes()[open] {
@@ -207,14 +238,28 @@ mod tests {
             changed("post[0].fill.curve.params.white", "4"),
             "post: [(module: \"tonemap\", fill: {\"curve\": (module: \"reinhard\", params: {\"white\": 4})})],"
         );
-        assert_eq!(changed("lights[0].casts_shadow", "false"), "(casts_shadow: false, name: \"sun\", module: \"directional\"),");
+        assert_eq!(
+            changed("lights[0].casts_shadow", "false"),
+            "(casts_shadow: false, name: \"sun\", module: \"directional\"),"
+        );
         assert_eq!(changed("lights[0].module", "point"), "(name: \"sun\", module: \"point\"),");
     }
 
     /// Catches a path that is quietly ignored.
     #[test]
     fn paths_to_nowhere_are_errors() {
-        for path in ["", "a..b", "lights[", "lights[7].fields.x", "lights[moon]", "size.x.y", "lights[0]x", "lights[]", "nothing.at.all", "[0"] {
+        for path in [
+            "",
+            "a..b",
+            "lights[",
+            "lights[7].fields.x",
+            "lights[moon]",
+            "size.x.y",
+            "lights[0]x",
+            "lights[]",
+            "nothing.at.all",
+            "[0",
+        ] {
             let error = set("a.scene.ron", TEXT, path, "1").unwrap_err();
             assert_eq!(error.code, codes::BAD_OVERRIDE_PATH, "{path}");
         }

@@ -28,7 +28,11 @@ impl Planter {
             let list = module.is_some_and(|m| m.manifest.slots.get(slot).is_some_and(|s| s.arity == Arity::List));
             let mut nodes = Vec::new();
             for (i, child) in choices.all().iter().enumerate() {
-                let place = if list { format!("{place}.{slot}[{i}]") } else { format!("{place}.{slot}") };
+                let place = if list {
+                    format!("{place}.{slot}[{i}]")
+                } else {
+                    format!("{place}.{slot}")
+                };
                 nodes.push(self.plant(child, &place, catalog, assets));
             }
             let filling = match (list, nodes.pop()) {
@@ -89,6 +93,7 @@ impl Planter {
     /// Nodes of a list slot.
     pub(super) fn plant_list(&mut self, choices: &Choices, place: &str, catalog: &Catalog, assets: &mut Assets) -> Vec<Node> {
         let each = choices.all().iter().enumerate();
-        each.map(|(i, c)| self.plant(c, &format!("{place}[{i}]"), catalog, assets)).collect()
+        each.map(|(i, c)| self.plant(c, &format!("{place}[{i}]"), catalog, assets))
+            .collect()
     }
 }

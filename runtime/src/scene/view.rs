@@ -46,7 +46,11 @@ pub(super) fn camera(examiner: &mut Examiner, decl: &CameraDecl, size: [u32; 2])
         Some(_) => {}
     }
     if !(decl.fov > 0.0 && decl.fov < 180.0) {
-        wrong("fov", "the field of view is not between 0 and 180 degrees", "degrees, from bottom to top");
+        wrong(
+            "fov",
+            "the field of view is not between 0 and 180 degrees",
+            "degrees, from bottom to top",
+        );
     }
     if !(decl.near > 0.0 && decl.near < decl.far && decl.far.is_finite()) {
         wrong("near", "the camera's depths are not 0 < near < far", "m");

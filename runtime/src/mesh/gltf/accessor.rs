@@ -28,7 +28,10 @@ fn elements<'a>(accessor: &gltf::Accessor, buffers: &'a [Vec<u8>]) -> Result<Ele
     };
     let (size, count) = (accessor.size(), accessor.count());
     if count > 3 * MAX_VERTICES {
-        return Err(unsupported(place, format!("an accessor of {count} elements, more than {},", 3 * MAX_VERTICES)));
+        return Err(unsupported(
+            place,
+            format!("an accessor of {count} elements, more than {},", 3 * MAX_VERTICES),
+        ));
     }
     let outside = || damaged(place.clone(), "reaches past the end of its buffer");
     let buffer = buffers.get(view.buffer().index()).ok_or_else(outside)?;
@@ -40,11 +43,18 @@ fn elements<'a>(accessor: &gltf::Accessor, buffers: &'a [Vec<u8>]) -> Result<Ele
         return Err(damaged(place, format!("elements of {size} bytes every {stride} bytes")));
     }
     // Count is limited above and stride is at most 252 after validation, but 64 bits are not everywhere.
-    let needed = count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
+    let needed = count
+        .checked_sub(1)
+        .map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
     if needed.is_none_or(|needed| needed > bytes.len()) {
         return Err(outside());
     }
-    Ok(Elements { bytes, stride, size, count })
+    Ok(Elements {
+        bytes,
+        stride,
+        size,
+        count,
+    })
 }
 
 impl<'a> Elements<'a> {
@@ -62,7 +72,10 @@ pub(super) fn floats<const N: usize>(accessor: &gltf::Accessor, buffers: &[Vec<u
         _ => Dimensions::Vec4,
     };
     if accessor.dimensions() != dimensions {
-        return Err(damaged(place(accessor), format!("{:?} where {dimensions:?} is needed", accessor.dimensions())));
+        return Err(damaged(
+            place(accessor),
+            format!("{:?} where {dimensions:?} is needed", accessor.dimensions()),
+        ));
     }
     let ty = accessor.data_type();
     let read: fn(&[u8], usize) -> f32 = match (ty, accessor.normalized()) {
@@ -71,7 +84,12 @@ pub(super) fn floats<const N: usize>(accessor: &gltf::Accessor, buffers: &[Vec<u
         (DataType::I8, true) => |b, i| (f32::from(b[i] as i8) / 127.0).max(-1.0),
         (DataType::U16, true) => |b, i| f32::from(u16::from_le_bytes([b[2 * i], b[2 * i + 1]])) / 65535.0,
         (DataType::I16, true) => |b, i| (f32::from(i16::from_le_bytes([b[2 * i], b[2 * i + 1]])) / 32767.0).max(-1.0),
-        _ => return Err(unsupported(place(accessor), format!("an attribute of {ty:?} that is not normalised"))),
+        _ => {
+            return Err(unsupported(
+                place(accessor),
+                format!("an attribute of {ty:?} that is not normalised"),
+            ));
+        }
     };
     let elements = elements(accessor, buffers)?;
     let mut out = Vec::with_capacity(elements.count);

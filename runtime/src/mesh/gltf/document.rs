@@ -58,7 +58,11 @@ fn check_alternatives(root: &json::Root) -> Result<(), GltfError> {
 
     for (i, mesh) in root.meshes.iter().enumerate() {
         for (k, primitive) in mesh.primitives.iter().enumerate() {
-            if primitive.attributes.values().any(|accessor| accessor.value() >= root.accessors.len()) {
+            if primitive
+                .attributes
+                .values()
+                .any(|accessor| accessor.value() >= root.accessors.len())
+            {
                 return Err(damaged(format!("meshes[{i}].primitives[{k}]"), "an accessor that does not exist"));
             }
         }
@@ -66,7 +70,10 @@ fn check_alternatives(root: &json::Root) -> Result<(), GltfError> {
     for (i, image) in root.images.iter().enumerate() {
         let by_view = image.buffer_view.is_some() && image.mime_type.is_some();
         if !by_view && (image.buffer_view.is_some() || image.uri.is_none()) {
-            return Err(damaged(format!("images[{i}]"), "neither a URI nor a buffer view with its MIME type"));
+            return Err(damaged(
+                format!("images[{i}]"),
+                "neither a URI nor a buffer view with its MIME type",
+            ));
         }
     }
     for (i, camera) in root.cameras.iter().enumerate() {
@@ -103,7 +110,10 @@ fn buffers(document: &gltf::Document, blob: Option<Vec<u8>>, folder: &Path) -> R
             gltf::buffer::Source::Uri(uri) => files::resolve(uri, folder, &place)?,
         };
         if data.len() < buffer.length() {
-            return Err(damaged(place, format!("{} bytes where {} are declared", data.len(), buffer.length())));
+            return Err(damaged(
+                place,
+                format!("{} bytes where {} are declared", data.len(), buffer.length()),
+            ));
         }
         all.push(data);
     }
@@ -157,14 +167,18 @@ impl Reader<'_> {
         let plain = |info: gltf::texture::Info| (info.texture().index(), info.tex_coord());
         let mut textures: Vec<(&'static str, (usize, u32))> = Vec::new();
         textures.extend(pbr.base_color_texture().map(|t| ("gltf:baseColorTexture", plain(t))));
-        textures.extend(pbr.metallic_roughness_texture().map(|t| ("gltf:metallicRoughnessTexture", plain(t))));
+        textures.extend(
+            pbr.metallic_roughness_texture()
+                .map(|t| ("gltf:metallicRoughnessTexture", plain(t))),
+        );
         textures.extend(material.emissive_texture().map(|t| ("gltf:emissiveTexture", plain(t))));
         if let Some(normal) = material.normal_texture() {
             made.factors.insert("gltf:normalScale", Value::Number(normal.scale().into()));
             textures.push(("gltf:normalTexture", (normal.texture().index(), normal.tex_coord())));
         }
         if let Some(occlusion) = material.occlusion_texture() {
-            made.factors.insert("gltf:occlusionStrength", Value::Number(occlusion.strength().into()));
+            made.factors
+                .insert("gltf:occlusionStrength", Value::Number(occlusion.strength().into()));
             textures.push(("gltf:occlusionTexture", (occlusion.texture().index(), occlusion.tex_coord())));
         }
         for (name, (texture, set)) in textures {
@@ -256,7 +270,10 @@ impl Reader<'_> {
                     None => self.default_material(&primitive.material())?,
                 };
                 self.asset.objects.push(Object {
-                    name: node.name().or(mesh.name()).map_or_else(|| format!("node {}", node.index()), str::to_owned),
+                    name: node
+                        .name()
+                        .or(mesh.name())
+                        .map_or_else(|| format!("node {}", node.index()), str::to_owned),
                     mesh_name: mesh.name().map(str::to_owned),
                     mesh: read,
                     material,

@@ -37,7 +37,10 @@ pub(super) fn resolve(uri: &str, folder: &Path, place: &str) -> Result<Vec<u8>, 
     let path = PathBuf::from(path.as_ref());
     // A scheme, or a path from the root, would reach outside what came with the file.
     if path.is_absolute() || uri.contains(':') || uri.starts_with(['/', '\\']) {
-        return Err(unsupported(place, format!("the reference `{}`, which is not relative,", shortened(uri))));
+        return Err(unsupported(
+            place,
+            format!("the reference `{}`, which is not relative,", shortened(uri)),
+        ));
     }
     read(&folder.join(path))
 }

@@ -8,7 +8,7 @@ mod document;
 mod files;
 mod geometry;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

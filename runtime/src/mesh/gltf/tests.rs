@@ -97,16 +97,20 @@ fn glb(document: &Json, blob: &[u8]) -> Vec<u8> {
 }
 
 fn sample() -> Vec<u8> {
+    sample_with(|_| {})
+}
+
+/// The sample as a `.glb`, its document changed.
+pub(crate) fn sample_with(change: impl FnOnce(&mut Json)) -> Vec<u8> {
     let blob = blob();
-    glb(&document(blob.len()), &blob)
+    let mut document = document(blob.len());
+    change(&mut document);
+    glb(&document, &blob)
 }
 
 /// The document with one change, and what is said about it.
 fn error_of(change: impl FnOnce(&mut Json)) -> String {
-    let blob = blob();
-    let mut document = document(blob.len());
-    change(&mut document);
-    parse(&glb(&document, &blob), Path::new("")).unwrap_err().to_string()
+    parse(&sample_with(change), Path::new("")).unwrap_err().to_string()
 }
 
 /// Catches lost transforms, factors, textures, strides, and normals or tangents that are not made.
@@ -128,7 +132,10 @@ fn reads_what_it_says() {
     // Without normals: flat, so nothing is shared, and glTF's default material.
     asset.objects[1].mesh.check().unwrap();
     assert_eq!(asset.objects[1].mesh.positions.len(), 6);
-    assert_eq!(asset.materials[asset.objects[1].material].factors["gltf:metallicFactor"], Value::Number(1.0));
+    assert_eq!(
+        asset.materials[asset.objects[1].material].factors["gltf:metallicFactor"],
+        Value::Number(1.0)
+    );
 
     let paint = &asset.materials[0];
     assert_eq!(paint.factors["gltf:baseColorFactor"], Value::List(vec![0.5, 0.25, 0.125]));
@@ -138,13 +145,25 @@ fn reads_what_it_says() {
     assert_eq!(paint.factors["gltf:normalScale"], Value::Number(0.5));
     assert_eq!((paint.alpha, paint.double_sided), (Alpha::Mask(0.25), true));
     assert_eq!(paint.textures["gltf:baseColorTexture"].rgba, [255, 0, 0, 255, 0, 255, 0, 128]);
-    assert!(Arc::ptr_eq(&paint.textures["gltf:baseColorTexture"], &paint.textures["gltf:normalTexture"]));
+    assert!(Arc::ptr_eq(
+        &paint.textures["gltf:baseColorTexture"],
+        &paint.textures["gltf:normalTexture"]
+    ));
 
-    assert_eq!(asset.cameras[0].perspective, Some(Perspective { fov: 0.5, near: 0.1, far: None }));
+    assert_eq!(
+        asset.cameras[0].perspective,
+        Some(Perspective {
+            fov: 0.5,
+            near: 0.1,
+            far: None
+        })
+    );
     let (sun, lamp) = (&asset.lights[0], &asset.lights[1]);
     assert_eq!((sun.name.as_str(), sun.kind), ("sun", "gltf:light/directional"));
     assert_eq!(sun.fields["gltf:intensity"], Value::Text("9 lx".to_owned()));
-    let Value::List(direction) = &sun.fields["direction"] else { panic!() };
+    let Value::List(direction) = &sun.fields["direction"] else {
+        panic!()
+    };
     assert!((direction[1] + 1.0).abs() < 1e-6, "{direction:?}");
     assert_eq!(lamp.kind, "gltf:light/point");
     assert_eq!(lamp.fields["gltf:intensity"], Value::Text("5 cd".to_owned()));
@@ -202,7 +221,8 @@ fn what_is_not_taken_is_named() {
     );
     assert_eq!(
         error_of(|d| {
-            d["accessors"][0]["sparse"] = json!({"count": 1, "indices": {"bufferView": 3, "componentType": 5123}, "values": {"bufferView": 0}});
+            d["accessors"][0]["sparse"] =
+                json!({"count": 1, "indices": {"bufferView": 3, "componentType": 5123}, "values": {"bufferView": 0}});
         }),
         "accessors[0]: a sparse accessor cannot be drawn"
     );
@@ -220,22 +240,38 @@ fn what_is_not_taken_is_named() {
 #[test]
 fn what_is_broken_is_located() {
     let ends: [(&str, fn(&mut Json)); 10] = [
-        ("meshes[0].primitives[0]: an accessor that does not exist", |d| d["accessors"] = json!([])),
-        ("accessors[0]: reaches past the end of its buffer", |d| d["accessors"][0]["byteOffset"] = json!(4)),
-        ("accessors[3]: reaches past the end of its buffer", |d| d["bufferViews"][3]["byteOffset"] = json!(4_000_000_000u32)),
-        ("nodes[0]: is the child of two nodes, or of itself", |d| d["nodes"][1]["children"] = json!([0])),
-        ("images[0]: neither a URI nor a buffer view with its MIME type", |d| d["images"] = json!([{"bufferView": 4}])),
-        ("cameras[0]: a camera without its numbers", |d| d["cameras"] = json!([{"type": "orthographic"}])),
+        ("meshes[0].primitives[0]: an accessor that does not exist", |d| {
+            d["accessors"] = json!([])
+        }),
+        ("accessors[0]: reaches past the end of its buffer", |d| {
+            d["accessors"][0]["byteOffset"] = json!(4)
+        }),
+        ("accessors[3]: reaches past the end of its buffer", |d| {
+            d["bufferViews"][3]["byteOffset"] = json!(4_000_000_000u32)
+        }),
+        ("nodes[0]: is the child of two nodes, or of itself", |d| {
+            d["nodes"][1]["children"] = json!([0])
+        }),
+        ("images[0]: neither a URI nor a buffer view with its MIME type", |d| {
+            d["images"] = json!([{"bufferView": 4}])
+        }),
+        ("cameras[0]: a camera without its numbers", |d| {
+            d["cameras"] = json!([{"type": "orthographic"}])
+        }),
         ("lights[0]: a spot light without its cone", |d| {
             d["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = json!("spot");
         }),
-        ("meshes[0].primitives[0]: 4 indices, not a multiple of 3", |d| d["accessors"][3]["count"] = json!(4)),
+        ("meshes[0].primitives[0]: 4 indices, not a multiple of 3", |d| {
+            d["accessors"][3]["count"] = json!(4)
+        }),
         ("meshes[0].primitives[0]: index 3 of 3 vertices", |d| {
             for i in 0..3 {
                 d["accessors"][i]["count"] = json!(3);
             }
         }),
-        ("buffers[0]: 188 bytes where 1000000 are declared", |d| d["buffers"][0]["byteLength"] = json!(1_000_000)),
+        ("buffers[0]: 188 bytes where 1000000 are declared", |d| {
+            d["buffers"][0]["byteLength"] = json!(1_000_000)
+        }),
     ];
     for (expected, change) in ends {
         let said = error_of(change);
