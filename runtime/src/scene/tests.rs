@@ -287,6 +287,35 @@ fn a_whole_error() {
     );
 }
 
+fn compile(catalog: &Catalog, node: &Node) -> shadewright_compiler::Program {
+    catalog.compile(&node.clone().into(), "main").unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Catches shadow bindings or functions in the linked shader of a scene without shadows, and derived recipes that do not link.
+#[test]
+fn derived_recipes_link_without_what_is_not_there() {
+    let catalog = catalog();
+    let shader = |text: &str| {
+        let frame = read(text).unwrap();
+        let program = compile(&catalog, &frame.materials[0].recipe);
+        let bindings: Vec<String> = program.reflection().bindings.iter().map(|b| format!("{:?}", b.fill)).collect();
+        (bindings.join("\n"), program.wgsl().to_owned(), program.reflection().passes.len())
+    };
+    let (bindings, wgsl, passes) = shader(&scene(SHADOWED, ""));
+    assert!(
+        bindings.contains("shadow_map") && wgsl.contains("shadow_compare") && passes == 1,
+        "{bindings}"
+    );
+    let off = SHADOWED.replace("point\",", "point\", casts_shadow: false,");
+    let (bindings, wgsl, passes) = shader(&scene(&off, ""));
+    assert!(
+        !bindings.contains("shadow") && !wgsl.contains("shadow") && passes == 0,
+        "{bindings}"
+    );
+    let (bindings, wgsl, _) = shader(&scene(SHADOWED, ", receives_light: false"));
+    assert!(!bindings.contains("shadow") && !wgsl.contains("instances"), "{wgsl}");
+}
+
 /// Catches a change that does not arrive, or one that is not checked.
 #[test]
 fn values_can_be_changed() {
@@ -388,6 +417,16 @@ fn the_examples_fit_together() {
     );
     assert_eq!(*first.display.as_ref().unwrap().recipe, recipe("display.recipe.ron"));
     assert_eq!(first.lights.len(), 3);
+    let linked = first
+        .materials
+        .iter()
+        .chain(&first.display)
+        .map(|m| compile(&catalog, &m.recipe).hash());
+    assert_eq!(
+        linked.collect::<std::collections::HashSet<_>>().len(),
+        3,
+        "one-sided, two-sided, display"
+    );
     let shadowed = first.lights.iter().filter(|l| l.node.fill.contains_key("visibility")).count();
     assert_eq!(shadowed, 2);
     for name in ["lambert-plane.scene.ron", "ggx-sphere.scene.ron"] {
@@ -395,7 +434,7 @@ fn the_examples_fit_together() {
         assert_eq!((frame.draws.len(), frame.lights.len(), frame.size), (1, 1, [128, 128]), "{name}");
     }
     for name in ["unshadowed.recipe.ron", "depth.recipe.ron", "auto-exposure.recipe.ron"] {
-        recipe(name);
+        compile(&catalog, &recipe(name));
     }
 }
 
@@ -403,7 +442,7 @@ fn the_examples_fit_together() {
 #[test]
 fn damage_never_panics() {
     let catalog = catalog();
-    let good = scene(SHADOWED, "");
+    let good = scene(SHADOWED, "").replace("radius: 1", "radius: 1, segments: 3, rings: 2");
     let try_it = |text: &str| {
         if let Ok(file) = SceneFile::parse("a.scene.ron", text, Path::new("/nonexistent")) {
             // A larger mesh is only slow.
@@ -415,7 +454,7 @@ fn damage_never_panics() {
     for cut in (0..good.len()).filter(|&i| good.is_char_boundary(i)) {
         try_it(&good[..cut]);
     }
-    for at in (0..good.len()).step_by(2) {
+    for at in (0..good.len()).step_by(3) {
         for byte in [b'(', b'}', b'"', b'9', b'-', b' '] {
             let mut bytes = good.clone().into_bytes();
             bytes[at] = byte;
