@@ -130,13 +130,28 @@ impl Gpu {
     /// # Errors
     /// That.
     pub fn check(&self) -> Result<(), GpuError> {
-        if let Some(reason) = lock(&self.faults.lost).clone() {
-            return Err(GpuError::Lost(reason));
+        let uncaptured = lock(&self.faults.uncaptured).take();
+        match uncaptured {
+            Some(error) => Err(self.or_lost(error)),
+            None => match lock(&self.faults.lost).clone() {
+                Some(reason) => Err(GpuError::Lost(reason)),
+                None => Ok(()),
+            },
         }
-        match lock(&self.faults.uncaptured).take() {
-            Some(error) => Err(error),
-            None => Ok(()),
+    }
+
+    /// The loss that caused an error, if one did: wgpu calls whatever a lost device gives invalid, and tells of the loss itself
+    /// only when it is polled.
+    fn or_lost(&self, error: GpuError) -> GpuError {
+        let slice = wgpu::PollType::Wait {
+            submission_index: None,
+            timeout: Some(Duration::from_secs(5)),
+        };
+        if self.device.poll(slice).is_err() {
+            log::debug!("polling after an error failed as well");
         }
+        let lost = lock(&self.faults.lost).clone();
+        lost.map_or(error, GpuError::Lost)
     }
 
     /// Runs calls of wgpu and returns the first error that they caused on this thread.
@@ -154,7 +169,7 @@ impl Gpu {
             first = first.or(pollster::block_on(scope.pop()));
         }
         match first {
-            Some(error) => Err(typed(what, error)),
+            Some(error) => Err(self.or_lost(typed(what, error))),
             None => self.check().map(|()| result),
         }
     }
@@ -184,12 +199,12 @@ impl Gpu {
         }
     }
 
-    /// Makes a buffer with these contents, padded with zeros to at least `size` bytes and a multiple of 16.
+    /// Makes a buffer with these contents, padded with zeros to at least `size` bytes and a multiple of 4.
     ///
     /// # Errors
     /// No memory, or larger than the device allows.
     pub fn buffer(&self, what: &str, usage: wgpu::BufferUsages, contents: &[u8], size: u64) -> Result<wgpu::Buffer, GpuError> {
-        let size = size.max(contents.len() as u64).max(16).next_multiple_of(16);
+        let size = size.max(contents.len() as u64).max(4).next_multiple_of(4);
         self.scoped(what, |device| {
             let buffer = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(what),

@@ -2,6 +2,7 @@
 
 use indexmap::IndexMap;
 use serde_json::Value as Json;
+use shadewright_compiler::diagnostics::nearest;
 use shadewright_compiler::manifest::Value;
 use shadewright_compiler::reflect::Layout;
 
@@ -118,6 +119,22 @@ fn word(scalar: Scalar, number: f64) -> Option<[u8; 4]> {
     }
 }
 
+/// Writes the members of a struct that the host fills: `value` gives the numbers of each.
+///
+/// # Errors
+/// The struct has a member that the host does not know, or knows with another type.
+pub fn put_members(layout: &Layout, path: &str, bytes: &mut [u8], value: impl Fn(&str) -> Option<Vec<f64>>) -> Result<(), DataError> {
+    for member in &layout.members {
+        let path = format!("{path}.{}", member.name);
+        let numbers = value(&member.name).ok_or_else(|| DataError::new(&path, "is not known to the host"))?;
+        let rest = bytes
+            .get_mut(member.offset as usize..)
+            .ok_or_else(|| DataError::new(&path, "outside of its buffer"))?;
+        put_numbers(&member.layout, &numbers, &path, rest)?;
+    }
+    Ok(())
+}
+
 /// Writes a JSON value: structs as objects, vectors and arrays as arrays, matrices as arrays of columns. Members that an
 /// object leaves out have their default, else zero. `bytes` starts zeroed.
 ///
@@ -192,13 +209,8 @@ fn pack_struct(layout: &Layout, value: &Json, path: &str, defaults: &Defaults, b
 /// An error that names the nearest of the names that exist.
 pub(crate) fn unknown<'a>(name: &str, kind: &str, of: &str, names: impl Iterator<Item = &'a str>, path: &str) -> DataError {
     let names: Vec<_> = names.collect();
-    let nearest = names
-        .iter()
-        .map(|n| (strsim::damerau_levenshtein(name, n), *n))
-        .min()
-        .filter(|(distance, _)| *distance <= name.len().max(3) / 2);
-    let hint = match nearest {
-        Some((_, nearest)) => format!("; did you mean `{nearest}`?"),
+    let hint = match nearest(name, names.iter().copied()) {
+        Some(nearest) => format!("; did you mean `{nearest}`?"),
         None if names.is_empty() => "; there are none".to_owned(),
         None => format!("; there are {}", names.join(", ")),
     };

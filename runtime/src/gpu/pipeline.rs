@@ -27,8 +27,10 @@ pub struct RenderState {
     pub depth: Option<wgpu::TextureFormat>,
     /// Write depth.
     pub depth_write: bool,
-    /// Drop triangles that are clockwise on the target.
+    /// Drop triangles seen from behind.
     pub cull_back: bool,
+    /// The front is where the corners run clockwise: the transform mirrors.
+    pub mirrored: bool,
 }
 
 /// Values of pipeline-overridable constants by key; what is not here keeps its default.
@@ -262,6 +264,11 @@ impl Pipelines {
                 },
                 primitive: wgpu::PrimitiveState {
                     cull_mode: state.cull_back.then_some(wgpu::Face::Back),
+                    front_face: if state.mirrored {
+                        wgpu::FrontFace::Cw
+                    } else {
+                        wgpu::FrontFace::Ccw
+                    },
                     ..Default::default()
                 },
                 depth_stencil: state.depth.map(|format| wgpu::DepthStencilState {
@@ -352,6 +359,7 @@ mod tests {
             depth: None,
             depth_write: false,
             cull_back: false,
+            mirrored: false,
         }
     }
 
