@@ -33,7 +33,7 @@ pub struct Choice {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Choices {
     /// One module.
-    One(Choice),
+    One(Box<Choice>),
     /// Modules in order.
     Many(Vec<Choice>),
 }
@@ -67,7 +67,7 @@ impl Choices {
     /// The modules in order.
     pub fn all(&self) -> &[Choice] {
         match self {
-            Self::One(one) => std::slice::from_ref(one),
+            Self::One(one) => std::slice::from_ref(&**one),
             Self::Many(many) => many,
         }
     }
@@ -130,10 +130,10 @@ impl<'de> Deserialize<'de> for Choices {
                 f.write_str("a module's name, (module: \"name\", ...), or a list of these")
             }
             fn visit_str<E: de::Error>(self, name: &str) -> Result<Choices, E> {
-                Ok(Choices::One(Choice::new(name)))
+                Ok(Choices::One(Box::new(Choice::new(name))))
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Choices, A::Error> {
-                Choice::deserialize(MapAccessDeserializer::new(map)).map(Choices::One)
+                Choice::deserialize(MapAccessDeserializer::new(map)).map(|one| Choices::One(Box::new(one)))
             }
             fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Choices, A::Error> {
                 let mut many = Vec::new();

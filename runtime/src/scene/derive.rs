@@ -266,7 +266,7 @@ fn include_file(
         if let Some((module, choice)) = include::material(examiner, decl, material, &path) {
             examiner.choice(&choice, Some(&module.category), &path);
             if let Some(slot) = slot_of(pass, &module.category) {
-                look.insert(slot, Choices::One(choice));
+                look.insert(slot, Choices::One(Box::new(choice)));
             }
         }
         looks.push(look);
@@ -355,7 +355,7 @@ fn kinds(examiner: &mut Examiner, lights: &[LightDecl]) -> Vec<Kind> {
         };
         let mut choice = as_choice(light);
         if let (Some(visibility), Some(slot), true) = (&light.visibility, slot_of(module, "visibility"), light.casts_shadow) {
-            choice.fill.insert(slot, Choices::One(visibility.clone()));
+            choice.fill.insert(slot, Choices::One(Box::new(visibility.clone())));
         }
         match kinds.iter_mut().find(|kind| kind.choice == choice) {
             Some(kind) => kind.instances.push(light.fields.clone()),

@@ -81,7 +81,7 @@ pub(super) fn material(examiner: &mut Examiner, decl: &GltfDecl, material: &Mate
         if let Some((resource, _)) = texture_of {
             map.textures.insert(resource.clone(), Picture::Loaded(Arc::clone(texture)));
         }
-        choice.fill.insert(slot.clone(), Choices::One(map));
+        choice.fill.insert(slot.clone(), Choices::One(Box::new(map)));
     }
     for (name, value) in &material.factors {
         if !used.contains(name) && !is_neutral(name, value) {

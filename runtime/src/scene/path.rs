@@ -29,6 +29,9 @@ enum Part {
     Named(String),
 }
 
+/// Steps with their places in the path.
+type Parts = Vec<(Part, Range<usize>)>;
+
 /// The text with the value at the path replaced, or added where a field or a map's entry is not there yet.
 ///
 /// The value is RON; a text that is none is taken as a string, so that quotes are not needed: `900 lm`, `"900 lm"`.
@@ -110,7 +113,7 @@ fn named<'a>(text: &str, places: &Locator, steps: &[Step<'a>], wanted: &str) -> 
 }
 
 /// `a.b[3]["c d"]` as steps, each with its place in the path.
-fn parse(path: &str) -> Result<Vec<(Part, Range<usize>)>, (usize, &'static str)> {
+fn parse(path: &str) -> Result<Parts, (usize, &'static str)> {
     let mut parts = Vec::new();
     let mut at = 0;
     while at < path.len() {

@@ -239,7 +239,8 @@ fn what_is_not_taken_is_named() {
 /// Catches reads past a buffer, cycles, and what the upstream reader unwraps.
 #[test]
 fn what_is_broken_is_located() {
-    let ends: [(&str, fn(&mut Json)); 10] = [
+    type Change = fn(&mut Json);
+    let ends: [(&str, Change); 10] = [
         ("meshes[0].primitives[0]: an accessor that does not exist", |d| {
             d["accessors"] = json!([])
         }),
