@@ -2,6 +2,9 @@
 
 pub mod frame;
 pub mod gpu;
+pub mod image;
+pub mod mesh;
+pub mod scene;
 
 pub use naga;
 pub use wgpu;
