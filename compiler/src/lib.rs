@@ -4,6 +4,7 @@ pub mod catalog;
 pub mod diagnostics;
 pub mod emit;
 pub mod library;
+pub mod limits;
 pub mod manifest;
 pub mod program;
 pub mod reflect;

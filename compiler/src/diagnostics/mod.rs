@@ -1,5 +1,7 @@
 //! Errors that point into the author's file.
 
+pub mod codes;
+mod render;
 mod report;
 
-pub use report::{Diagnostic, Label, Report, SourceFile};
+pub use report::{Diagnostic, Label, Position, Report, SourceFile, nearest};

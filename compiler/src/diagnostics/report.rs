@@ -19,6 +19,45 @@ impl SourceFile {
             text: text.into(),
         })
     }
+
+    /// Line and column of a byte of the text; a byte past the end counts as the end.
+    pub fn position(&self, byte: usize) -> Position {
+        let before = &self.text[..self.text.floor_char_boundary(byte)];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Position {
+            line: before.bytes().filter(|&b| b == b'\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+        }
+    }
+
+    /// The byte at which the character of this line and column stands; the line's or the text's end where there is none.
+    pub fn byte_at(&self, position: Position) -> usize {
+        let mut start = 0;
+        for _ in 1..position.line {
+            match self.text[start..].find('\n') {
+                Some(newline) => start += newline + 1,
+                None => return self.text.len(),
+            }
+        }
+        let line = self.text[start..].split('\n').next().unwrap_or_default();
+        let column = position.column.saturating_sub(1);
+        start + line.char_indices().nth(column).map_or(line.len(), |(byte, _)| byte)
+    }
+
+    /// `name:line:column` of a byte of the text.
+    pub fn place(&self, byte: usize) -> String {
+        let Position { line, column } = self.position(byte);
+        format!("{}:{line}:{column}", self.name)
+    }
+}
+
+/// A position as people count it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Position {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
 }
 
 /// A place in a file and what is to be seen there.
@@ -73,6 +112,19 @@ impl Diagnostic {
         self.notes.push(note.into());
         self
     }
+
+    /// Advises the known name that is nearest to `found` if one is near, and lists all of them.
+    #[must_use]
+    pub fn suggest<'a>(mut self, found: &str, what: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
+        let known: Vec<&str> = known.into_iter().collect();
+        if let Some(near) = nearest(found, known.iter().copied()) {
+            self.notes.push(format!("did you mean `{near}`?"));
+        }
+        if !known.is_empty() {
+            self.notes.push(format!("{what}: {}", known.join(", ")));
+        }
+        self
+    }
 }
 
 /// One or more errors; what every fallible call of the compiler returns.
@@ -93,12 +145,30 @@ impl From<Diagnostic> for Report {
 impl Report {
     /// The rendered text that people read: every error with the lines it points at.
     pub fn render(&self) -> String {
-        String::new()
+        super::render::text(&self.diagnostics)
     }
 
-    /// The machine-readable form: a list of objects with code, message, labels (file, start, end, line, column, text) and notes.
+    /// The machine-readable form: a list of objects with `code`, `message`, `labels` (`file`, `start`, `end`, `line`, `column`,
+    /// `end_line`, `end_column`, `text`) and `notes`.
     pub fn to_json(&self) -> serde_json::Value {
-        serde_json::Value::Null
+        super::render::json(&self.diagnostics)
+    }
+
+    /// Appends the diagnostics of another report.
+    pub fn extend(&mut self, other: Report) {
+        self.diagnostics.extend(other.diagnostics);
+    }
+
+    /// A report of what was found, or nothing where nothing was.
+    ///
+    /// # Errors
+    /// There are diagnostics.
+    pub fn unless_empty(diagnostics: Vec<Diagnostic>) -> Result<(), Report> {
+        if diagnostics.is_empty() {
+            Ok(())
+        } else {
+            Err(Report { diagnostics })
+        }
     }
 }
 
@@ -109,3 +179,44 @@ impl fmt::Display for Report {
 }
 
 impl std::error::Error for Report {}
+
+/// The name nearest to `found`, if it is near enough to be a slip of the pen. Of equally near ones the first.
+pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let mut best: Option<(f64, &str)> = None;
+    for name in known {
+        // A name that continues what was written (or the reverse) is near however long the rest is.
+        let continues = found.len() >= 3 && (name.starts_with(found) || found.starts_with(name) && name.len() >= 3);
+        let similarity = strsim::jaro_winkler(found, name).max(if continues { 0.9 } else { 0.0 });
+        if similarity >= 0.75 && best.is_none_or(|(s, _)| similarity > s) {
+            best = Some((similarity, name));
+        }
+    }
+    best.map(|(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches bytes counted as columns, and lines counted from zero.
+    #[test]
+    fn positions_count_characters_from_one() {
+        let file = SourceFile::new("f", "aé\n字b\n");
+        assert_eq!(file.position(0), Position { line: 1, column: 1 });
+        assert_eq!(file.position(7), Position { line: 2, column: 2 });
+        assert_eq!(file.place(99), "f:3:1");
+        for byte in [0, 1, 3, 4, 7, 8, 9] {
+            assert_eq!(file.byte_at(file.position(byte)), byte);
+        }
+        assert_eq!(file.byte_at(Position { line: 9, column: 9 }), file.text.len());
+    }
+
+    /// Catches a suggestion of something far off, and a miss of an evident one.
+    #[test]
+    fn nearest_names() {
+        assert_eq!(nearest("micofacet", ["lambert", "microfacet"]), Some("microfacet"));
+        assert_eq!(nearest("ggx", ["smith-ggx-correlated", "schlick"]), None);
+        assert_eq!(nearest("smith", ["ggx", "smith-ggx-correlated"]), Some("smith-ggx-correlated"));
+        assert_eq!(nearest("xyz", ["lambert"]), None);
+    }
+}

@@ -1,11 +1,15 @@
 //! RON text to declarations: categories, modules, recipes.
 
 mod category;
+mod load;
 mod module;
 mod recipe;
+mod spans;
 
 pub use category::{CategoryManifest, Combine};
+pub use load::{Parsed, parse, parse_category, parse_module, parse_recipe, ron_options};
 pub use module::{
     Among, Arity, Dispatch, Filling, ModuleManifest, Param, ParamMode, ParamType, PassDecl, Resource, ResourceKind, Rule, Slot, ViewKind,
 };
 pub use recipe::{Node, Value};
+pub use spans::{Locator, Step};

@@ -173,6 +173,7 @@ pub struct Resource {
 
 /// Kinds of resources, by how the host makes them.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub enum ResourceKind {
     /// Filled by the host program under this name (`frame`, `objects`, `hdr`).
     Host(String),
@@ -213,6 +214,7 @@ pub enum ResourceKind {
 
 /// A pass that a module needs.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub enum PassDecl {
     /// Draws the scene into a depth texture, once for each view.
     Draw {
@@ -256,6 +258,7 @@ pub enum Dispatch {
 
 /// A demand on the rest of the tree.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub enum Rule {
     /// Something with this tag must stand there.
     Requires {
