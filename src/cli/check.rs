@@ -144,10 +144,21 @@ fn check(context: &Context, thing: &Thing) -> Result<(), Failure> {
     match thing {
         Thing::Module(name) => {
             let module = Arc::clone(context.catalog.module(name)?);
-            tree(context, &Recipe::from(alone(context, &module, 0)?))
+            tree(context, &Recipe::from(alone(context, &module, 0)?))?;
+            cases(context, name)
         }
         Thing::Recipe(path) => tree(context, &Recipe::parse(&path.to_string_lossy(), &input::text(path)?)?),
         Thing::Scene(path) => super::render::check(context, path),
+    }
+}
+
+/// Reads the table of a module's expected values, where it has one; what they are worth only a GPU can tell.
+fn cases(context: &Context, module: &str) -> Result<(), Failure> {
+    let path = format!("{module}/cases.ron");
+    let wrong = |why: String| Failure::message(format!("{path}: {why}"));
+    match context.library.read(&path).map_err(wrong)? {
+        Some(text) => shadewright::modules::cases::parse(&text).map(|_| ()).map_err(wrong),
+        None => Ok(()),
     }
 }
 

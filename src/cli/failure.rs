@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::json;
 use shadewright::compiler::Report;
+use shadewright::runtime::gpu::{GpuError, RuntimeError};
 
 use super::Format;
 
@@ -21,6 +22,8 @@ pub enum Failure {
     Usage(String),
     /// No GPU, and what to install: status 3.
     NoGpu(String),
+    /// The GPU refused what we made for it: status 70.
+    Bug(String),
     /// All has been said on standard output already: status 1.
     Said,
     /// Whoever reads standard output has seen enough: status 0.
@@ -30,6 +33,25 @@ pub enum Failure {
 impl From<Report> for Failure {
     fn from(report: Report) -> Self {
         Self::Input(report)
+    }
+}
+
+impl From<GpuError> for Failure {
+    fn from(error: GpuError) -> Self {
+        match error {
+            GpuError::Invalid { .. } => Self::Bug(error.to_string()),
+            _ => Self::NoGpu(error.to_string()),
+        }
+    }
+}
+
+impl From<RuntimeError> for Failure {
+    fn from(error: RuntimeError) -> Self {
+        match error {
+            RuntimeError::Gpu(error) => error.into(),
+            RuntimeError::Compile(report) => report.into(),
+            RuntimeError::Data(error) => Self::Message(error.to_string()),
+        }
     }
 }
 
@@ -44,6 +66,7 @@ impl Failure {
             Self::Input(_) | Self::Message(_) | Self::Said => 1,
             Self::Usage(_) => 2,
             Self::NoGpu(_) => 3,
+            Self::Bug(_) => BUG,
             Self::BrokenPipe => 0,
         }
     }
@@ -53,6 +76,7 @@ impl Failure {
         match self {
             Self::Input(report) => report.render(),
             Self::Message(text) | Self::Usage(text) | Self::NoGpu(text) => format!("error: {text}"),
+            Self::Bug(text) => bug(text),
             Self::Said | Self::BrokenPipe => String::new(),
         }
     }
@@ -65,8 +89,8 @@ impl Failure {
             (Self::Input(report), Format::Json) => {
                 complain(&json!({"status": self.status(), "diagnostics": report.to_json()}).to_string());
             }
-            (Self::Message(text) | Self::Usage(text) | Self::NoGpu(text), Format::Json) => {
-                complain(&json!({"status": self.status(), "message": text}).to_string());
+            (Self::Message(message) | Self::Usage(message) | Self::NoGpu(message) | Self::Bug(message), Format::Json) => {
+                complain(&json!({"status": self.status(), "message": message}).to_string());
             }
         }
     }
@@ -79,6 +103,12 @@ fn complain(text: &str) {
 
 const BUG: u8 = 70;
 
+/// One line for a bug of ours.
+fn bug(what: &str) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    format!("shadewright {version}: this is a bug of ours, please report it: {}", what.replace('\n', " "))
+}
+
 /// Runs a command to its exit status. A panic is a bug of ours: one line and status 70.
 pub fn finish(format: Format, command: impl FnOnce() -> Result<(), Failure>) -> ExitCode {
     ExitCode::from(status_of(format, command))
@@ -89,8 +119,7 @@ fn status_of(format: Format, command: impl FnOnce() -> Result<(), Failure>) -> u
     let last = Arc::new(Mutex::new(String::new()));
     let seen = Arc::clone(&last);
     std::panic::set_hook(Box::new(move |info| {
-        let text = info.to_string().replace('\n', " ");
-        *seen.lock().unwrap_or_else(PoisonError::into_inner) = text;
+        *seen.lock().unwrap_or_else(PoisonError::into_inner) = info.to_string();
     }));
     match catch_unwind(AssertUnwindSafe(command)) {
         Ok(Ok(())) => 0,
