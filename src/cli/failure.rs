@@ -121,7 +121,9 @@ fn status_of(format: Format, command: impl FnOnce() -> Result<(), Failure>) -> u
     std::panic::set_hook(Box::new(move |info| {
         *seen.lock().unwrap_or_else(PoisonError::into_inner) = info.to_string();
     }));
-    match catch_unwind(AssertUnwindSafe(command)) {
+    let result = catch_unwind(AssertUnwindSafe(command));
+    drop(std::panic::take_hook());
+    match result {
         Ok(Ok(())) => 0,
         Ok(Err(failure)) => {
             failure.say(format);
@@ -129,10 +131,7 @@ fn status_of(format: Format, command: impl FnOnce() -> Result<(), Failure>) -> u
         }
         Err(_) => {
             let text = last.lock().unwrap_or_else(PoisonError::into_inner).clone();
-            complain(&format!(
-                "shadewright {}: this is a bug of ours, please report it: {text}",
-                env!("CARGO_PKG_VERSION")
-            ));
+            complain(&bug(&text));
             BUG
         }
     }

@@ -107,7 +107,7 @@ mod tests {
     /// Catches columns that don't nest, empty cells taken for values, and vectors taken for text.
     #[test]
     fn columns_are_paths() {
-        let text = "s.alpha, s.f0, v, params.width\n0.5, \"[1, 1, 1]\", \"[0, 0, 1]\", 2700 K\n, , \"[0, 1, 0]\",\n";
+        let text = "s.alpha, s.f0, v, params.width\n0.5,\"[1, 1, 1]\",\"[0, 0, 1]\", 2700 K\n, ,\"[0, 1, 0]\",\n";
         assert_eq!(
             rows_of_csv(text),
             Ok(vec![
