@@ -8,6 +8,7 @@ pub mod limits;
 pub mod manifest;
 pub mod program;
 pub mod reflect;
+pub mod upstream;
 pub mod validate;
 
 pub use catalog::{Catalog, Category, Module};

@@ -186,7 +186,8 @@ pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     for name in known {
         // A name that continues what was written (or the reverse) is near however long the rest is.
         let continues = found.len() >= 3 && (name.starts_with(found) || found.starts_with(name) && name.len() >= 3);
-        let similarity = strsim::jaro_winkler(found, name).max(if continues { 0.9 } else { 0.0 });
+        let one_slip = found.len() >= 3 && strsim::damerau_levenshtein(found, name) == 1;
+        let similarity = strsim::jaro_winkler(found, name).max(if continues || one_slip { 0.9 } else { 0.0 });
         if similarity >= 0.75 && best.is_none_or(|(s, _)| similarity > s) {
             best = Some((similarity, name));
         }
@@ -217,6 +218,7 @@ mod tests {
         assert_eq!(nearest("micofacet", ["lambert", "microfacet"]), Some("microfacet"));
         assert_eq!(nearest("ggx", ["smith-ggx-correlated", "schlick"]), None);
         assert_eq!(nearest("smith", ["ggx", "smith-ggx-correlated"]), Some("smith-ggx-correlated"));
+        assert_eq!(nearest("kml", ["lm", "klm"]), Some("klm"));
         assert_eq!(nearest("xyz", ["lambert"]), None);
     }
 }

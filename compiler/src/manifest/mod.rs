@@ -5,6 +5,8 @@ mod load;
 mod module;
 mod recipe;
 mod spans;
+mod temperature;
+mod value;
 
 pub use category::{CategoryManifest, Combine};
 pub use load::{Parsed, parse, parse_category, parse_module, parse_recipe, ron_options};
@@ -13,3 +15,5 @@ pub use module::{
 };
 pub use recipe::{Node, Value};
 pub use spans::{Locator, Step};
+pub use temperature::{KELVIN, black_body};
+pub use value::{Typed, ValueError, shortest, typed};

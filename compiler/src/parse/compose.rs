@@ -13,7 +13,7 @@ use indexmap::{IndexMap, IndexSet};
 use super::lex::Kind;
 use super::scan::{ItemKind, Scan};
 use crate::catalog::Category;
-use crate::codes;
+use crate::diagnostics::codes;
 use crate::diagnostics::{Diagnostic, Report, SourceFile};
 use crate::manifest::{Param, ParamType, Typed};
 
@@ -43,7 +43,12 @@ pub enum Origin {
         function: String,
     },
     /// A function that the owner of the slot offers.
-    Offered(String),
+    Offered {
+        /// Category of the interface that declares it.
+        interface: String,
+        /// The function.
+        function: String,
+    },
     /// The uniform parameters: the variable `params` and its struct.
     Params,
     /// A parameter that is a constant or an override here.
@@ -313,7 +318,8 @@ impl Composer<'_> {
             for used in closure {
                 let interface = (self.interfaces)(used)?;
                 if let Some(item) = interface.scan.item(name).filter(|i| i.kind == ItemKind::Function) {
-                    self.claim(name, Origin::Offered(name.clone()), "a function that the owner of the slot offers")?;
+                    let origin = Origin::Offered { interface: used.clone(), function: name.clone() };
+                    self.claim(name, origin, "a function that the owner of the slot offers")?;
                     self.copy(&interface.file, item.span.clone());
                     break;
                 }
@@ -332,10 +338,6 @@ impl Composer<'_> {
         self.out.text.push_str(text);
         self.out.text.push('\n');
         self.out.segments.push(Segment { range: start..start + text.len(), file: Arc::clone(file), start: span.start });
-        if span.end < file.text.len() && text.ends_with("fn ") {
-            // A function's name follows, with a prefix before it: take the line end back.
-            self.out.text.pop();
-        }
     }
 }
 

@@ -6,5 +6,6 @@ pub mod lex;
 pub mod scan;
 mod unit;
 
-pub use compose::{Composed, Interface, Needs, Origin, SlotNeed, compose};
-pub use unit::{StructKey, Unit, parse_unit};
+pub use checks::same_signature;
+pub use compose::{Composed, Interface, Needs, Origin, SlotNeed, compose, constant_name, fields_struct, param_uses, wgsl_type};
+pub use unit::{StructKey, Unit, chain, check_interface, parse_unit};

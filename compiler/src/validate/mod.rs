@@ -1,10 +1,22 @@
 //! The gate: nothing that has not passed naga's validator reaches emission or a GPU.
 
+use naga::WithSpan;
+use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};
+
 /// A linked module that naga's validator accepted, with all its checks on.
 #[derive(Debug)]
 pub struct Validated {
     module: naga::Module,
-    info: naga::valid::ModuleInfo,
+    info: ModuleInfo,
+}
+
+/// Validates a module with all of naga's checks, allowing all capabilities: which ones a target or device has is asked there.
+///
+/// # Errors
+/// naga's validator refuses the module. The spans are those of the module's own expressions.
+pub fn validate(module: naga::Module) -> Result<Validated, WithSpan<ValidationError>> {
+    let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module)?;
+    Ok(Validated { module, info })
 }
 
 impl Validated {
@@ -14,7 +26,7 @@ impl Validated {
     }
 
     /// What the validator found out about it.
-    pub fn info(&self) -> &naga::valid::ModuleInfo {
+    pub fn info(&self) -> &ModuleInfo {
         &self.info
     }
 }

@@ -1,0 +1,345 @@
+//! Cloning a function: the living expressions, in their order, with every reference outward patched.
+
+use naga::{Block, Expression, Function, FunctionArgument, FunctionResult, Handle, LocalVariable, Range, Span, Statement, SwitchCase};
+
+use super::ir::Linker;
+use crate::plan::{Choice, Planned, choice, is_dead_store, is_params, reachable, struct_of};
+
+type Exprs = Vec<Option<Handle<Expression>>>;
+
+/// First and last expression of a range to emit, and its place.
+type Emitted = (Handle<Expression>, Handle<Expression>, Span);
+
+/// A function on its way from its unit to the output.
+struct Clone<'f> {
+    home: usize,
+    planned: &'f Planned,
+    source: &'f Function,
+    info: &'f naga::valid::FunctionInfo,
+    exprs: Exprs,
+    locals: Vec<Option<Handle<LocalVariable>>>,
+}
+
+impl Linker<'_> {
+    pub fn body(&mut self, planned: &Planned, source: &Function) -> Function {
+        let home = planned.home;
+        let mut out = Function { name: Some(planned.name.clone()), ..Function::default() };
+        for argument in &source.arguments {
+            let ty = self.ty(home, argument.ty);
+            out.arguments.push(FunctionArgument { name: argument.name.clone(), ty, binding: argument.binding.clone() });
+        }
+        out.result = source.result.as_ref().map(|r| FunctionResult { ty: self.ty(home, r.ty), binding: r.binding.clone() });
+        let plan = self.plan;
+        let Some(info) = planned.info(&plan.homes) else { return out };
+        let mut clone =
+            Clone { home, planned, source, info, exprs: vec![None; source.expressions.len()], locals: vec![None; source.local_variables.len()] };
+        for (handle, expression) in source.expressions.iter() {
+            if planned.live[handle.index()] {
+                let patched = self.expression(&mut clone, &mut out, expression);
+                let span = self.span(home, source.expressions.get_span(handle));
+                clone.exprs[handle.index()] = Some(out.expressions.append(patched, span));
+            }
+        }
+        for (&handle, name) in &source.named_expressions {
+            if let Some(done) = clone.exprs[handle.index()] {
+                out.named_expressions.insert(done, name.clone());
+            }
+        }
+        out.diagnostic_filter_leaf = self.filter(home, source.diagnostic_filter_leaf);
+        out.body = self.block(&clone, &out, &source.body);
+        out
+    }
+
+    fn local(&mut self, clone: &mut Clone, out: &mut Function, handle: Handle<LocalVariable>) -> Handle<LocalVariable> {
+        if let Some(done) = clone.locals[handle.index()] {
+            return done;
+        }
+        let declared = &clone.source.local_variables[handle];
+        let ty = self.ty(clone.home, declared.ty);
+        // Initialisers are constant expressions that precede every use.
+        let init = declared.init.and_then(|e| clone.exprs[e.index()]);
+        let span = self.span(clone.home, clone.source.local_variables.get_span(handle));
+        let done = out.local_variables.append(LocalVariable { name: declared.name.clone(), ty, init }, span);
+        clone.locals[handle.index()] = Some(done);
+        done
+    }
+
+    /// An expression with its operands and references in the output. Every variant is named: a new one must not slip through.
+    fn expression(&mut self, clone: &mut Clone, out: &mut Function, expression: &Expression) -> Expression {
+        let home = clone.home;
+        let mut patched = expression.clone();
+        match &mut patched {
+            Expression::Literal(_)
+            | Expression::FunctionArgument(_)
+            | Expression::RayQueryProceedResult
+            | Expression::SubgroupBallotResult => {}
+            Expression::Constant(constant) => *constant = self.constant(home, *constant),
+            Expression::Override(o) => *o = self.override_(home, *o),
+            Expression::ZeroValue(ty) => *ty = self.ty(home, *ty),
+            Expression::AtomicResult { ty, .. }
+            | Expression::WorkGroupUniformLoadResult { ty }
+            | Expression::SubgroupOperationResult { ty } => *ty = self.ty(home, *ty),
+            Expression::Compose { ty, components } => {
+                if let Some(id) = self.plan.structs.id(home, *ty) {
+                    let mut index = 0;
+                    components.retain(|_| {
+                        index += 1;
+                        self.plan.structs.is_live(id, index - 1)
+                    });
+                }
+                *ty = self.ty(home, *ty);
+                components.iter_mut().for_each(|c| *c = clone.get(*c));
+            }
+            Expression::GlobalVariable(global) => {
+                let unit = &self.plan.homes[home].unit;
+                *global = if is_params(unit, *global) { self.params_block(clone, *global) } else { self.global(home, *global) };
+            }
+            Expression::LocalVariable(local) => *local = self.local(clone, out, *local),
+            Expression::CallResult(function) => *function = self.callee(clone, *function),
+            Expression::AccessIndex { base, index } => {
+                *index = self.member_index(clone, *base, *index);
+                *base = clone.get(*base);
+            }
+            Expression::Access { base, index } => {
+                *base = clone.get(*base);
+                *index = clone.get(*index);
+            }
+            Expression::Splat { value: h, .. }
+            | Expression::Swizzle { vector: h, .. }
+            | Expression::Load { pointer: h }
+            | Expression::Unary { expr: h, .. }
+            | Expression::Derivative { expr: h, .. }
+            | Expression::As { expr: h, .. }
+            | Expression::Relational { argument: h, .. }
+            | Expression::ArrayLength(h)
+            | Expression::RayQueryVertexPositions { query: h, .. }
+            | Expression::RayQueryGetIntersection { query: h, .. } => *h = clone.get(*h),
+            Expression::ImageSample { image, sampler, coordinate, array_index, offset, level, depth_ref, gather: _, clamp_to_edge: _ } => {
+                for h in [image, sampler, coordinate].into_iter().chain(array_index).chain(offset).chain(depth_ref) {
+                    *h = clone.get(*h);
+                }
+                match level {
+                    naga::SampleLevel::Auto | naga::SampleLevel::Zero => {}
+                    naga::SampleLevel::Exact(h) | naga::SampleLevel::Bias(h) => *h = clone.get(*h),
+                    naga::SampleLevel::Gradient { x, y } => {
+                        *x = clone.get(*x);
+                        *y = clone.get(*y);
+                    }
+                }
+            }
+            Expression::ImageLoad { image, coordinate, array_index, sample, level } => {
+                for h in [image, coordinate].into_iter().chain(array_index).chain(sample).chain(level) {
+                    *h = clone.get(*h);
+                }
+            }
+            Expression::ImageQuery { image, query } => {
+                *image = clone.get(*image);
+                if let naga::ImageQuery::Size { level: Some(level) } = query {
+                    *level = clone.get(*level);
+                }
+            }
+            Expression::Binary { left, right, .. } => {
+                *left = clone.get(*left);
+                *right = clone.get(*right);
+            }
+            Expression::Select { condition, accept, reject } => {
+                for h in [condition, accept, reject] {
+                    *h = clone.get(*h);
+                }
+            }
+            Expression::Math { arg, arg1, arg2, arg3, fun } => {
+                if matches!(fun, naga::MathFunction::Modf | naga::MathFunction::Frexp) {
+                    self.result_types(home);
+                }
+                for h in [arg].into_iter().chain(arg1).chain(arg2).chain(arg3) {
+                    *h = clone.get(*h);
+                }
+            }
+            Expression::CooperativeLoad { data, .. } => {
+                data.pointer = clone.get(data.pointer);
+                data.stride = clone.get(data.stride);
+            }
+            Expression::CooperativeMultiplyAdd { a, b, c } => {
+                for h in [a, b, c] {
+                    *h = clone.get(*h);
+                }
+            }
+        }
+        patched
+    }
+
+    /// `modf` and `frexp` name their result's type only through the module's list of predeclared types.
+    fn result_types(&mut self, home: usize) {
+        let types: Vec<_> = self.plan.homes[home].unit.ir.special_types.predeclared_types.values().copied().collect();
+        for ty in types {
+            self.ty(home, ty);
+        }
+    }
+
+    fn callee(&self, clone: &Clone, function: Handle<Function>) -> Handle<Function> {
+        // Every call of a live branch was planned, and callees are linked before their callers.
+        clone.planned.calls.get(&function).and_then(|&index| self.functions[index]).unwrap_or(function)
+    }
+
+    /// The block for a use of `params`: all parameters of one home are in one group.
+    fn params_block(&mut self, clone: &Clone, global: Handle<naga::GlobalVariable>) -> Handle<naga::GlobalVariable> {
+        let plan = self.plan;
+        let member = plan.live_params.iter().filter(|(home, _)| *home == clone.home).map(|&(_, index)| index).min();
+        member.and_then(|index| self.block_member(clone.home, index)).map_or(global, |(block, _)| block)
+    }
+
+    fn member_index(&mut self, clone: &Clone, base: Handle<Expression>, index: u32) -> u32 {
+        let plan = self.plan;
+        let unit = &plan.homes[clone.home].unit;
+        if let Expression::GlobalVariable(global) = clone.source.expressions[base] {
+            if is_params(unit, global) {
+                return self.block_member(clone.home, index).map_or(index, |(_, member)| member);
+            }
+        }
+        match struct_of(clone.home, &plan.structs, clone.info, &unit.ir, base) {
+            Some(id) if !plan.structs.list[id].fixed => plan.structs.new_index(id, index),
+            _ => index,
+        }
+    }
+
+    fn block(&self, clone: &Clone, out: &Function, source: &Block) -> Block {
+        let mut block = Block::with_capacity(source.len());
+        let mut emitted = None;
+        self.statements(clone, out, source, &mut block, &mut emitted);
+        flush(&mut emitted, &mut block);
+        block
+    }
+
+    /// Adds statements; inner blocks and branches that are always taken are laid open, since IR has no scopes to keep.
+    fn statements(&self, clone: &Clone, out: &Function, source: &Block, block: &mut Block, emitted: &mut Option<Emitted>) {
+        for (statement, &span) in reachable(&self.plan.homes[clone.home].unit.ir, clone.source, source) {
+            let span = self.span(clone.home, span);
+            if let Statement::Emit(range) = statement {
+                // Ranges that the dead expressions between them kept apart become one, as the parser would make them.
+                for handle in range.clone().filter_map(|h| clone.exprs[h.index()]) {
+                    if needs_no_emit(&out.expressions[handle]) {
+                        continue;
+                    }
+                    match emitted {
+                        Some((_, last, _)) if last.index() + 1 == handle.index() => *last = handle,
+                        _ => {
+                            flush(emitted, block);
+                            *emitted = Some((handle, handle, span));
+                        }
+                    }
+                }
+                continue;
+            }
+            let ir = &self.plan.homes[clone.home].unit.ir;
+            let laid_open = match statement {
+                Statement::Block(inner) => Some(inner),
+                Statement::If { condition, accept, reject } => match choice(ir, clone.source, *condition) {
+                    Choice::Accept => Some(accept),
+                    Choice::Reject => Some(reject),
+                    Choice::Open => None,
+                },
+                _ => None,
+            };
+            if let Some(inner) = laid_open {
+                self.statements(clone, out, inner, block, emitted);
+            } else if let Some(statement) = self.statement(clone, out, statement) {
+                flush(emitted, block);
+                block.push(statement, span);
+            }
+        }
+    }
+
+    fn statement(&self, clone: &Clone, out: &Function, statement: &Statement) -> Option<Statement> {
+        let plan = self.plan;
+        let ir = &plan.homes[clone.home].unit.ir;
+        let mut patched = match statement {
+            Statement::If { condition, accept, reject } => {
+                let (accept, reject) = (self.block(clone, out, accept), self.block(clone, out, reject));
+                return Some(Statement::If { condition: clone.get(*condition), accept, reject });
+            }
+            Statement::Switch { selector, cases } => {
+                let case = |c: &SwitchCase| SwitchCase { value: c.value, body: self.block(clone, out, &c.body), fall_through: c.fall_through };
+                return Some(Statement::Switch { selector: clone.get(*selector), cases: cases.iter().map(case).collect() });
+            }
+            Statement::Loop { body, continuing, break_if } => {
+                return Some(Statement::Loop {
+                    body: self.block(clone, out, body),
+                    continuing: self.block(clone, out, continuing),
+                    break_if: break_if.map(|b| clone.get(b)),
+                });
+            }
+            Statement::Store { pointer, .. } if is_dead_store(clone.home, &plan.structs, clone.source, clone.info, ir, *pointer) => return None,
+            other => other.clone(),
+        };
+        match &mut patched {
+            Statement::Call { function, arguments, result } => {
+                *function = self.callee(clone, *function);
+                arguments.iter_mut().chain(result).for_each(|h| *h = clone.get(*h));
+            }
+            Statement::Store { pointer, value } => {
+                *pointer = clone.get(*pointer);
+                *value = clone.get(*value);
+            }
+            Statement::Return { value } => value.iter_mut().for_each(|h| *h = clone.get(*h)),
+            other => patch_operands(other, &|h| clone.get(h)),
+        }
+        Some(patched)
+    }
+}
+
+impl Clone<'_> {
+    /// The linked expression. Whatever a living expression or statement needs is alive, and precedes it.
+    fn get(&self, handle: Handle<Expression>) -> Handle<Expression> {
+        self.exprs[handle.index()].unwrap_or(handle)
+    }
+}
+
+fn flush(emitted: &mut Option<Emitted>, block: &mut Block) {
+    if let Some((first, last, span)) = emitted.take() {
+        block.push(Statement::Emit(Range::new_from_bounds(first, last)), span);
+    }
+}
+
+/// Expressions that are there from the start of the function: naga refuses to emit them.
+fn needs_no_emit(expression: &Expression) -> bool {
+    expression.needs_pre_emit()
+}
+
+/// Operands of statements without blocks other than calls, stores and returns.
+fn patch_operands(statement: &mut Statement, get: &dyn Fn(Handle<Expression>) -> Handle<Expression>) {
+    let patch = |h: &mut Handle<Expression>| *h = get(*h);
+    match statement {
+        Statement::ImageStore { image, coordinate, array_index, value } => {
+            [image, coordinate, value].into_iter().chain(array_index).for_each(patch);
+        }
+        Statement::Atomic { pointer, fun, value, result } => {
+            [pointer, value].into_iter().chain(result).for_each(patch);
+            if let naga::AtomicFunction::Exchange { compare: Some(compare) } = fun {
+                patch(compare);
+            }
+        }
+        Statement::ImageAtomic { image, coordinate, array_index, fun, value } => {
+            [image, coordinate, value].into_iter().chain(array_index).for_each(patch);
+            if let naga::AtomicFunction::Exchange { compare: Some(compare) } = fun {
+                patch(compare);
+            }
+        }
+        Statement::WorkGroupUniformLoad { pointer, result } => [pointer, result].into_iter().for_each(patch),
+        Statement::SubgroupBallot { result, predicate } => [result].into_iter().chain(predicate).for_each(patch),
+        Statement::SubgroupGather { mode, argument, result } => {
+            [argument, result].into_iter().for_each(patch);
+            match mode {
+                naga::GatherMode::BroadcastFirst | naga::GatherMode::QuadSwap(_) => {}
+                naga::GatherMode::Broadcast(h)
+                | naga::GatherMode::Shuffle(h)
+                | naga::GatherMode::ShuffleDown(h)
+                | naga::GatherMode::ShuffleUp(h)
+                | naga::GatherMode::ShuffleXor(h)
+                | naga::GatherMode::QuadBroadcast(h) => patch(h),
+            }
+        }
+        Statement::SubgroupCollectiveOperation { argument, result, .. } => [argument, result].into_iter().for_each(patch),
+        Statement::CooperativeStore { target, data } => [target, &mut data.pointer, &mut data.stride].into_iter().for_each(patch),
+        _ => {}
+    }
+}

@@ -1,0 +1,10 @@
+//! The plan, written: as IR for the runtime and the other languages, as source for people.
+
+mod body;
+mod combine;
+mod ir;
+mod source;
+mod types;
+
+pub use ir::{Linked, link};
+pub use source::write_source;

@@ -1,0 +1,172 @@
+//! Bindings and uniform blocks, numbered over the whole tree.
+
+use std::collections::HashSet;
+
+use naga::{AddressSpace, Expression, GlobalVariable, Handle};
+
+use super::Plan;
+use crate::catalog::Catalog;
+use crate::diagnostics::{Diagnostic, Report, codes};
+use crate::manifest::Resource;
+use crate::parse::{Origin, Unit};
+
+/// Names of the bind groups' parameter blocks, by group: frame, lights and shadows, material, pass.
+pub const GROUPS: [&str; 4] = ["frame", "light", "material", "pass"];
+
+/// A module-scope variable that is reached.
+#[derive(Clone, Debug)]
+pub struct PlannedGlobal {
+    /// Home that declares it.
+    pub home: usize,
+    /// In its unit.
+    pub handle: Handle<GlobalVariable>,
+    /// Group and binding; `None` for private and workgroup variables.
+    pub binding: Option<(u32, u32)>,
+}
+
+/// The uniform parameters of one group.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// Bind group.
+    pub group: u32,
+    /// Binding.
+    pub binding: u32,
+    /// Members in order.
+    pub members: Vec<BlockMember>,
+}
+
+/// A parameter in a block.
+#[derive(Clone, Debug)]
+pub struct BlockMember {
+    /// Home whose parameter it is.
+    pub home: usize,
+    /// Index in the unit's `Params`.
+    pub index: u32,
+    /// The parameter.
+    pub param: String,
+    /// Name in the block.
+    pub name: String,
+}
+
+/// Whether a variable is the unit's `params`.
+pub fn is_params(unit: &Unit, global: Handle<GlobalVariable>) -> bool {
+    let name = unit.ir.global_variables[global].name.as_deref();
+    name == Some("params") && matches!(unit.origin("params"), Some(Origin::Params))
+}
+
+/// Whether a variable is the unit's `instances`.
+pub fn is_instances(unit: &Unit, global: Handle<GlobalVariable>) -> bool {
+    let name = unit.ir.global_variables[global].name.as_deref();
+    name == Some("instances") && matches!(unit.origin("instances"), Some(Origin::Instances))
+}
+
+/// Numbers what is reached: in each group the parameters first, then the interfaces' resources, then those of the
+/// instances in tree order, each in the order of its text.
+pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
+    let reached = reached(plan);
+    let mut next = [0u32; GROUPS.len()];
+    for group in 0..GROUPS.len() as u32 {
+        let members = block_members(catalog, plan, group);
+        if !members.is_empty() {
+            plan.blocks.push(Block { group, binding: 0, members });
+            next[group as usize] = 1;
+        }
+    }
+    let interfaces = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_none());
+    let instances = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_some());
+    let order: Vec<usize> = interfaces.chain(instances).collect();
+    for home in order {
+        let unit = &plan.homes[home].unit;
+        for (handle, global) in unit.ir.global_variables.iter() {
+            if !reached.contains(&(home, handle)) || is_params(unit, handle) {
+                continue;
+            }
+            let bound = !matches!(global.space, AddressSpace::Private | AddressSpace::WorkGroup);
+            let mut binding = None;
+            if bound {
+                let group = group_of(catalog, plan, home, handle)?;
+                let number = &mut next[group as usize];
+                binding = Some((group, *number));
+                *number += 1;
+            }
+            plan.globals.push(PlannedGlobal { home, handle, binding });
+        }
+    }
+    Ok(())
+}
+
+/// Variables that live expressions name, by the home that declares them.
+fn reached(plan: &Plan) -> HashSet<(usize, Handle<GlobalVariable>)> {
+    let mut reached = HashSet::new();
+    for planned in &plan.functions {
+        let Some(function) = planned.ir(&plan.homes) else { continue };
+        for (handle, expression) in function.expressions.iter() {
+            if let (Expression::GlobalVariable(global), true) = (expression, planned.live[handle.index()]) {
+                reached.insert(declaring(plan, planned.home, *global));
+            }
+        }
+    }
+    reached
+}
+
+/// The home and handle that a variable really is: a unit also holds copies of its interfaces' variables.
+pub fn declaring(plan: &Plan, home: usize, global: Handle<GlobalVariable>) -> (usize, Handle<GlobalVariable>) {
+    let unit = &plan.homes[home].unit;
+    let name = unit.ir.global_variables[global].name.as_deref().unwrap_or_default();
+    if let Some(Origin::Interface(category)) = unit.origin(name) {
+        let declared = plan.homes.iter().position(|h| h.unit.interface.as_ref() == Some(category));
+        if let Some(interface) = declared {
+            let found = plan.homes[interface].unit.ir.global_variables.iter().find(|(_, g)| g.name.as_deref() == Some(name));
+            if let Some((handle, _)) = found {
+                return (interface, handle);
+            }
+        }
+    }
+    (home, global)
+}
+
+fn block_members(catalog: &Catalog, plan: &Plan, group: u32) -> Vec<BlockMember> {
+    let mut members = Vec::new();
+    for (index, instance) in plan.instances.list.iter().enumerate() {
+        let module = &plan.tree.nodes[instance.node].module;
+        if catalog.category(&module.category).map_or(3, |c| c.manifest.group) != group {
+            continue;
+        }
+        for (position, param) in plan.homes[index].unit.needs.uniforms.keys().enumerate() {
+            if plan.live_params.contains(&(index, position as u32)) {
+                let name = format!("{}_{param}", instance.name);
+                members.push(BlockMember { home: index, index: position as u32, param: param.clone(), name });
+            }
+        }
+    }
+    members
+}
+
+/// What a home's manifest says of a variable.
+pub fn declared<'c>(catalog: &'c Catalog, plan: &'c Plan, home: usize, name: &str) -> Option<&'c Resource> {
+    match plan.homes[home].instance {
+        Some(instance) => plan.tree.nodes[plan.instances.list[instance].node].module.manifest.resources.get(name),
+        None => catalog.category(plan.homes[home].unit.interface.as_deref()?)?.manifest.resources.get(name),
+    }
+}
+
+fn group_of(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVariable>) -> Result<u32, Report> {
+    let unit = &plan.homes[home].unit;
+    let name = unit.ir.global_variables[handle].name.as_deref().unwrap_or_default();
+    let category = match plan.homes[home].instance {
+        Some(instance) => Some(plan.tree.nodes[plan.instances.list[instance].node].module.category.as_str()),
+        None => unit.interface.as_deref(),
+    };
+    let group = category.and_then(|c| catalog.category(c)).map_or(3, |c| c.manifest.group);
+    if is_instances(unit, handle) {
+        return Ok(group);
+    }
+    let Some(resource) = declared(catalog, plan, home, name) else {
+        let span = unit.scan.item(name).map_or(0..0, |i| i.name_span.clone());
+        return Err(Diagnostic::new(codes::UNDECLARED_RESOURCE, format!("the manifest does not declare the resource `{name}`"))
+            .at(&unit.file, span, "declared here, but not under `resources`")
+            .note("the host must know how to fill it: add it to `resources` of the manifest beside this file")
+            .into());
+    };
+    Ok(resource.group.unwrap_or(group))
+}

@@ -1,0 +1,451 @@
+//! What of the reached functions is alive: expressions that something depends on, struct members that somebody reads.
+//!
+//! A store into a member that nobody reads is dead, and so is what only it needed; a vertex stage's outputs are alive
+//! where the fragment stage reads them. The analysis starts with no member alive and repeats until nothing is added.
+
+use std::collections::HashSet;
+
+use naga::{Binding, Block, Expression, Handle, ShaderStage, Statement, Type, TypeInner};
+
+use super::{Body, Choice, Home, Plan, Planned, Structs, choice, reachable};
+
+/// Finds out what is alive and writes it into the plan.
+pub fn analyse(plan: &mut Plan) {
+    loop {
+        settle(plan);
+        if !keep_one_member(plan) {
+            break;
+        }
+    }
+}
+
+fn settle(plan: &mut Plan) {
+    loop {
+        let mut changed = false;
+        for index in 0..plan.functions.len() {
+            let Some(function) = plan.functions[index].ir(&plan.homes) else { continue };
+            let Some(info) = plan.functions[index].info(&plan.homes) else { continue };
+            let mut walker = Walker {
+                homes: &plan.homes,
+                planned: &plan.functions[index],
+                function,
+                info,
+                structs: &mut plan.structs,
+                params: &mut plan.live_params,
+                live: vec![false; function.expressions.len()],
+                read: vec![false; function.expressions.len()],
+                stack: Vec::new(),
+                changed: false,
+            };
+            walker.keep_lets_with_calls();
+            walker.block(&function.body);
+            changed |= walker.changed;
+            plan.functions[index].live = walker.live;
+        }
+        changed |= link_stages(plan);
+        if !changed {
+            break;
+        }
+    }
+}
+
+/// Vertex outputs are alive where a fragment entry point of the plan reads their location.
+fn link_stages(plan: &mut Plan) -> bool {
+    let mut wanted = HashSet::new();
+    let mut outputs = Vec::new();
+    let mut changed = false;
+    for planned in &plan.functions {
+        let Body::Entry(index) = planned.body else { continue };
+        let unit = &plan.homes[planned.home].unit;
+        let entry = &unit.ir.entry_points[index];
+        if entry.stage == ShaderStage::Fragment {
+            for argument in &entry.function.arguments {
+                for (id, member, binding) in bound_members(plan, planned.home, argument.ty) {
+                    if let (Some(Binding::Location { location, .. }), true) = (binding, plan.structs.is_live(id, member)) {
+                        wanted.insert(location);
+                    }
+                }
+            }
+        }
+        if let Some(result) = &entry.function.result {
+            let members = bound_members(plan, planned.home, result.ty);
+            outputs.extend(members.into_iter().map(|(id, member, binding)| (entry.stage, id, member, binding)));
+        }
+    }
+    for (stage, id, member, binding) in outputs {
+        let unread = matches!(binding, Some(Binding::Location { location, .. }) if stage == ShaderStage::Vertex && !wanted.contains(&location));
+        if !unread {
+            changed |= plan.structs.enliven(id, member);
+        }
+    }
+    changed
+}
+
+fn bound_members(plan: &Plan, home: usize, ty: Handle<Type>) -> Vec<(usize, u32, Option<Binding>)> {
+    let unit = &plan.homes[home].unit;
+    match (&unit.ir.types[ty].inner, plan.structs.id(home, ty)) {
+        (TypeInner::Struct { members, .. }, Some(id)) => {
+            members.iter().enumerate().map(|(index, m)| (id, index as u32, m.binding.clone())).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// WGSL has no empty structs: one that is used keeps a member, a built-in value rather than a location.
+fn keep_one_member(plan: &mut Plan) -> bool {
+    let mut used = HashSet::new();
+    for planned in &plan.functions {
+        let unit = &plan.homes[planned.home].unit;
+        let Some(function) = planned.ir(&plan.homes) else { continue };
+        let types = function.arguments.iter().map(|a| a.ty).chain(function.result.iter().map(|r| r.ty));
+        for ty in types.chain(function.local_variables.iter().map(|(_, l)| l.ty)) {
+            used_structs(&plan.structs, &unit.ir, planned.home, ty, &mut used);
+        }
+    }
+    let mut changed = false;
+    let mut used: Vec<usize> = used.into_iter().collect();
+    used.sort_unstable();
+    for id in used {
+        let s = &plan.structs.list[id];
+        if s.fixed || s.live.iter().any(|&l| l) {
+            continue;
+        }
+        let ir = &plan.homes[s.home].unit.ir;
+        let declared = ir.types.iter().find_map(|(_, t)| match &t.inner {
+            TypeInner::Struct { members, .. } if t.name.as_deref() == Some(&s.name) => Some(members),
+            _ => None,
+        });
+        let builtin = declared.and_then(|m| m.iter().position(|m| matches!(m.binding, Some(Binding::BuiltIn(_)))));
+        changed |= plan.structs.enliven(id, builtin.unwrap_or(0) as u32);
+    }
+    changed
+}
+
+fn used_structs(structs: &Structs, ir: &naga::Module, home: usize, ty: Handle<Type>, used: &mut HashSet<usize>) {
+    match &ir.types[ty].inner {
+        TypeInner::Struct { members, .. } => {
+            if let Some(id) = structs.id(home, ty) {
+                used.insert(id);
+            }
+            members.iter().for_each(|m| used_structs(structs, ir, home, m.ty, used));
+        }
+        TypeInner::Array { base, .. } | TypeInner::Pointer { base, .. } => used_structs(structs, ir, home, *base, used),
+        _ => {}
+    }
+}
+
+struct Walker<'a> {
+    homes: &'a [Home],
+    planned: &'a Planned,
+    function: &'a naga::Function,
+    info: &'a naga::valid::FunctionInfo,
+    structs: &'a mut Structs,
+    params: &'a mut HashSet<(usize, u32)>,
+    /// Needed in the linked function.
+    live: Vec<bool>,
+    /// Its value is needed, not only its address for a store.
+    read: Vec<bool>,
+    stack: Vec<Handle<Expression>>,
+    changed: bool,
+}
+
+impl Walker<'_> {
+    /// A call may do more than give a value, so a `let` with a call in it stays, whoever reads it.
+    fn keep_lets_with_calls(&mut self) {
+        for &named in self.function.named_expressions.keys() {
+            if self.holds_call(named) {
+                self.read(named);
+            }
+        }
+    }
+
+    fn holds_call(&self, handle: Handle<Expression>) -> bool {
+        // A call inside a `let` has its result inside the initialiser's span.
+        let span = self.function.expressions.get_span(handle).to_range().unwrap_or_default();
+        self.function.expressions.iter().take(handle.index() + 1).any(|(h, e)| {
+            let inside = || self.function.expressions.get_span(h).to_range().is_some_and(|s| span.start <= s.start && s.end <= span.end);
+            is_result(e) && inside()
+        })
+    }
+
+    fn block(&mut self, block: &Block) {
+        for (statement, _) in reachable(&self.homes[self.planned.home].unit.ir, self.function, block) {
+            self.statement(statement);
+        }
+    }
+
+    fn statement(&mut self, statement: &Statement) {
+        match statement {
+            Statement::Emit(_)
+            | Statement::Break
+            | Statement::Continue
+            | Statement::Kill
+            | Statement::ControlBarrier(_)
+            | Statement::MemoryBarrier(_) => {}
+            Statement::Block(inner) => self.block(inner),
+            Statement::If { condition, accept, reject } => match choice(&self.homes[self.planned.home].unit.ir, self.function, *condition) {
+                Choice::Accept => self.block(accept),
+                Choice::Reject => self.block(reject),
+                Choice::Open => {
+                    self.read(*condition);
+                    self.block(accept);
+                    self.block(reject);
+                }
+            },
+            Statement::Switch { selector, cases } => {
+                self.read(*selector);
+                cases.iter().for_each(|c| self.block(&c.body));
+            }
+            Statement::Loop { body, continuing, break_if } => {
+                self.block(body);
+                self.block(continuing);
+                break_if.iter().for_each(|&b| self.read(b));
+            }
+            Statement::Return { value } => value.iter().for_each(|&v| self.read(v)),
+            Statement::Store { pointer, value } => {
+                if !is_dead_store(self.planned.home, self.structs, self.function, self.info, &self.homes[self.planned.home].unit.ir, *pointer) {
+                    self.address(*pointer);
+                    self.read(*value);
+                }
+            }
+            Statement::Call { arguments, result, .. } => {
+                arguments.iter().for_each(|&a| self.read(a));
+                result.iter().for_each(|&r| self.read(r));
+            }
+            other => operands(other, &mut |h| self.read(h)),
+        }
+    }
+
+    /// The pointer of a store: its members are written, not read.
+    fn address(&mut self, mut handle: Handle<Expression>) {
+        loop {
+            self.live[handle.index()] = true;
+            match self.function.expressions[handle] {
+                Expression::AccessIndex { base, .. } => handle = base,
+                Expression::Access { base, index } => {
+                    self.read(index);
+                    handle = base;
+                }
+                Expression::LocalVariable(local) => {
+                    self.function.local_variables[local].init.iter().for_each(|&i| self.read(i));
+                    return;
+                }
+                // A pointer from elsewhere: an argument, a variable of the module.
+                _ => return,
+            }
+        }
+    }
+
+    fn read(&mut self, handle: Handle<Expression>) {
+        self.stack.push(handle);
+        while let Some(handle) = self.stack.pop() {
+            if std::mem::replace(&mut self.read[handle.index()], true) {
+                continue;
+            }
+            self.live[handle.index()] = true;
+            self.expression(handle);
+        }
+    }
+
+    fn expression(&mut self, handle: Handle<Expression>) {
+        let home = self.planned.home;
+        let expression = &self.function.expressions[handle];
+        match expression {
+            Expression::AccessIndex { base, index } => {
+                let unit = &self.homes[home].unit;
+                if let Expression::GlobalVariable(global) = self.function.expressions[*base] {
+                    if super::bindings::is_params(unit, global) && self.params.insert((home, *index)) {
+                        self.changed = true;
+                    }
+                }
+                if let Some(id) = struct_of(home, self.structs, self.info, &unit.ir, *base) {
+                    self.changed |= self.structs.enliven(id, *index);
+                }
+                self.stack.push(*base);
+            }
+            Expression::LocalVariable(local) => self.stack.extend(self.function.local_variables[*local].init),
+            Expression::Compose { ty, components } => {
+                let id = self.structs.id(home, *ty);
+                for (index, &component) in components.iter().enumerate() {
+                    if id.is_none_or(|id| self.structs.is_live(id, index as u32)) {
+                        self.stack.push(component);
+                    }
+                }
+            }
+            other => expression_operands(other, &mut |h| self.stack.push(h)),
+        }
+    }
+}
+
+/// Whether a store writes a member that nobody reads.
+pub fn is_dead_store(
+    home: usize,
+    structs: &Structs,
+    function: &naga::Function,
+    info: &naga::valid::FunctionInfo,
+    ir: &naga::Module,
+    mut pointer: Handle<Expression>,
+) -> bool {
+    loop {
+        match function.expressions[pointer] {
+            Expression::AccessIndex { base, index } => {
+                if struct_of(home, structs, info, ir, base).is_some_and(|id| !structs.is_live(id, index)) {
+                    return true;
+                }
+                pointer = base;
+            }
+            Expression::Access { base, .. } => pointer = base,
+            _ => return false,
+        }
+    }
+}
+
+/// The struct that an expression is, or points to.
+pub fn struct_of(
+    home: usize,
+    structs: &Structs,
+    info: &naga::valid::FunctionInfo,
+    ir: &naga::Module,
+    handle: Handle<Expression>,
+) -> Option<usize> {
+    let resolution = &info[handle].ty;
+    let ty = match *resolution.inner_with(&ir.types) {
+        TypeInner::Pointer { base, .. } => base,
+        TypeInner::Struct { .. } => resolution.handle()?,
+        _ => return None,
+    };
+    structs.id(home, ty)
+}
+
+/// Whether an expression is the result of a statement.
+fn is_result(expression: &Expression) -> bool {
+    matches!(
+        expression,
+        Expression::CallResult(_)
+            | Expression::AtomicResult { .. }
+            | Expression::WorkGroupUniformLoadResult { .. }
+            | Expression::RayQueryProceedResult
+            | Expression::SubgroupBallotResult
+            | Expression::SubgroupOperationResult { .. }
+    )
+}
+
+/// Operands of an expression.
+pub fn expression_operands(expression: &Expression, visit: &mut dyn FnMut(Handle<Expression>)) {
+    match expression {
+        Expression::Literal(_)
+        | Expression::Constant(_)
+        | Expression::Override(_)
+        | Expression::ZeroValue(_)
+        | Expression::FunctionArgument(_)
+        | Expression::GlobalVariable(_)
+        | Expression::LocalVariable(_)
+        | Expression::CallResult(_)
+        | Expression::AtomicResult { .. }
+        | Expression::WorkGroupUniformLoadResult { .. }
+        | Expression::RayQueryProceedResult
+        | Expression::SubgroupBallotResult
+        | Expression::SubgroupOperationResult { .. } => {}
+        Expression::Compose { components, .. } => components.iter().for_each(|&c| visit(c)),
+        Expression::Access { base, index } => {
+            visit(*base);
+            visit(*index);
+        }
+        Expression::AccessIndex { base, .. } => visit(*base),
+        Expression::Splat { value, .. } => visit(*value),
+        Expression::Swizzle { vector, .. } => visit(*vector),
+        Expression::Load { pointer } => visit(*pointer),
+        Expression::ImageSample { image, sampler, coordinate, array_index, offset, level, depth_ref, gather: _, clamp_to_edge: _ } => {
+            visit(*image);
+            visit(*sampler);
+            visit(*coordinate);
+            array_index.iter().chain(offset).chain(depth_ref).for_each(|&h| visit(h));
+            match level {
+                naga::SampleLevel::Auto | naga::SampleLevel::Zero => {}
+                naga::SampleLevel::Exact(h) | naga::SampleLevel::Bias(h) => visit(*h),
+                naga::SampleLevel::Gradient { x, y } => {
+                    visit(*x);
+                    visit(*y);
+                }
+            }
+        }
+        Expression::ImageLoad { image, coordinate, array_index, sample, level } => {
+            visit(*image);
+            visit(*coordinate);
+            array_index.iter().chain(sample).chain(level).for_each(|&h| visit(h));
+        }
+        Expression::ImageQuery { image, query } => {
+            visit(*image);
+            if let naga::ImageQuery::Size { level: Some(level) } = query {
+                visit(*level);
+            }
+        }
+        Expression::Unary { expr, .. } | Expression::Derivative { expr, .. } | Expression::As { expr, .. } => visit(*expr),
+        Expression::Binary { left, right, .. } => {
+            visit(*left);
+            visit(*right);
+        }
+        Expression::Select { condition, accept, reject } => {
+            visit(*condition);
+            visit(*accept);
+            visit(*reject);
+        }
+        Expression::Relational { argument, .. } => visit(*argument),
+        Expression::Math { arg, arg1, arg2, arg3, .. } => {
+            visit(*arg);
+            arg1.iter().chain(arg2).chain(arg3).for_each(|&h| visit(h));
+        }
+        Expression::ArrayLength(h) => visit(*h),
+        Expression::RayQueryVertexPositions { query, .. } | Expression::RayQueryGetIntersection { query, .. } => visit(*query),
+        Expression::CooperativeLoad { data, .. } => {
+            visit(data.pointer);
+            visit(data.stride);
+        }
+        Expression::CooperativeMultiplyAdd { a, b, c } => {
+            visit(*a);
+            visit(*b);
+            visit(*c);
+        }
+    }
+}
+
+/// Operands of a statement that has no blocks and is neither store nor call.
+fn operands(statement: &Statement, visit: &mut dyn FnMut(Handle<Expression>)) {
+    match statement {
+        Statement::ImageStore { image, coordinate, array_index, value } => {
+            [*image, *coordinate, *value].into_iter().chain(*array_index).for_each(visit);
+        }
+        Statement::Atomic { pointer, fun, value, result } => {
+            let compare = match fun {
+                naga::AtomicFunction::Exchange { compare } => *compare,
+                _ => None,
+            };
+            [*pointer, *value].into_iter().chain(compare).chain(*result).for_each(visit);
+        }
+        Statement::ImageAtomic { image, coordinate, array_index, fun, value } => {
+            let compare = match fun {
+                naga::AtomicFunction::Exchange { compare } => *compare,
+                _ => None,
+            };
+            [*image, *coordinate, *value].into_iter().chain(compare).chain(*array_index).for_each(visit);
+        }
+        Statement::WorkGroupUniformLoad { pointer, result } => [*pointer, *result].into_iter().for_each(visit),
+        Statement::SubgroupBallot { result, predicate } => [*result].into_iter().chain(*predicate).for_each(visit),
+        Statement::SubgroupGather { mode, argument, result } => {
+            let index = match *mode {
+                naga::GatherMode::BroadcastFirst | naga::GatherMode::QuadSwap(_) => None,
+                naga::GatherMode::Broadcast(h)
+                | naga::GatherMode::Shuffle(h)
+                | naga::GatherMode::ShuffleDown(h)
+                | naga::GatherMode::ShuffleUp(h)
+                | naga::GatherMode::ShuffleXor(h)
+                | naga::GatherMode::QuadBroadcast(h) => Some(h),
+            };
+            [*argument, *result].into_iter().chain(index).for_each(visit);
+        }
+        Statement::SubgroupCollectiveOperation { argument, result, .. } => [*argument, *result].into_iter().for_each(visit),
+        Statement::CooperativeStore { target, data } => [*target, data.pointer, data.stride].into_iter().for_each(visit),
+        // Ray queries and ray pipelines: refused when the unit is checked.
+        _ => {}
+    }
+}

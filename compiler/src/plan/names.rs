@@ -1,0 +1,101 @@
+//! Emitted names: interfaces' items keep theirs, modules' items get the instance's before them.
+
+use std::collections::{HashMap, HashSet};
+
+use super::{Body, Plan};
+
+/// Gives every function and every item of a unit its emitted name.
+pub fn assign(plan: &mut Plan) {
+    let mut used = reserved(plan);
+    // Interfaces first: their names are the contract.
+    let interfaces = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_none());
+    let instances = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_some());
+    let order: Vec<usize> = interfaces.chain(instances).collect();
+    let mut functions: HashMap<(usize, String), usize> = HashMap::new();
+    for (index, planned) in plan.functions.iter().enumerate() {
+        if !matches!(planned.body, Body::Combined { .. }) {
+            functions.insert((planned.home, planned.source_name(&plan.homes).to_owned()), index);
+        }
+    }
+    for home in order {
+        let unit = std::sync::Arc::clone(&plan.homes[home].unit);
+        let prefix = plan.homes[home].prefix.clone();
+        for item in unit.scan.items.iter().filter(|i| !i.name.is_empty()) {
+            let function = functions.get(&(home, item.name.clone())).copied();
+            let entry = function.is_some_and(|f| matches!(plan.functions[f].body, Body::Entry(_)));
+            // The root's entry points are what a host calls by name.
+            let wanted = if entry && home == 0 { item.name.clone() } else { joined(&prefix, &item.name) };
+            let name = free(wanted, &mut used);
+            if let Some(function) = function {
+                plan.functions[function].name.clone_from(&name);
+            }
+            plan.names.insert((home, item.name.clone()), name);
+        }
+        for name in unit.needs.overrides.keys().chain(unit.needs.constants.keys()) {
+            let emitted = free(joined(&prefix, name), &mut used);
+            plan.names.insert((home, crate::parse::constant_name(name)), emitted);
+        }
+        if !unit.needs.instances.is_empty() {
+            for name in ["Instance", "instances"] {
+                let emitted = free(joined(&prefix, name), &mut used);
+                plan.names.insert((home, name.to_owned()), emitted);
+            }
+        }
+    }
+    for index in 0..plan.functions.len() {
+        if let Body::Combined { slot, function, .. } = &plan.functions[index].body {
+            let prefix = &plan.homes[plan.functions[index].home].prefix;
+            let wanted = if slot == function { format!("{prefix}_{slot}") } else { format!("{prefix}_{slot}_{function}") };
+            plan.functions[index].name = free(wanted, &mut used);
+        }
+    }
+}
+
+/// Names that must not be taken: blocks, and every local and builtin that some text of the plan mentions, lest a
+/// renamed item be captured by a local or hide a builtin.
+fn reserved(plan: &Plan) -> HashSet<String> {
+    let mut used: HashSet<String> = HashSet::new();
+    for group in super::GROUPS {
+        used.insert(format!("{group}_params"));
+        used.insert(joined(group, "Params"));
+    }
+    for home in &plan.homes {
+        for item in &home.unit.scan.items {
+            used.extend(item.locals.iter().cloned());
+            let text = &home.unit.file.text;
+            let words = item.references.iter().map(|r| &text[home.unit.scan.tokens[r.token].range()]);
+            used.extend(words.filter(|w| home.unit.origin(w).is_none()).map(str::to_owned));
+        }
+    }
+    used
+}
+
+/// Instance and item in the item's own style: `point_light`, `PointInstance`, `POINT_LIMIT`.
+pub fn joined(prefix: &str, name: &str) -> String {
+    if prefix.is_empty() {
+        return name.to_owned();
+    }
+    let upper = name.chars().any(|c| c.is_ascii_uppercase());
+    let lower = name.chars().any(|c| c.is_ascii_lowercase());
+    match (upper, lower) {
+        (true, false) => format!("{}_{name}", prefix.to_ascii_uppercase()),
+        _ if name.starts_with(|c: char| c.is_ascii_uppercase()) => {
+            let mut camel = String::new();
+            for part in prefix.split('_').filter(|p| !p.is_empty()) {
+                let (head, tail) = part.split_at(1);
+                camel.push_str(&head.to_ascii_uppercase());
+                camel.push_str(tail);
+            }
+            camel + name
+        }
+        _ => format!("{prefix}_{name}"),
+    }
+}
+
+fn free(wanted: String, used: &mut HashSet<String>) -> String {
+    let mut name = wanted;
+    while !used.insert(name.clone()) {
+        name.push('_');
+    }
+    name
+}

@@ -1,0 +1,364 @@
+//! From the entry points to every function that is called, across modules.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use naga::{Block, Handle, Statement};
+
+use super::{Body, Choice, Home, Plan, Planned, Structs, bindings, choice, live, names, reachable};
+use crate::catalog::Catalog;
+use crate::diagnostics::{Diagnostic, Report, codes};
+use crate::manifest::Combine;
+use crate::parse::{Origin, Unit};
+use crate::resolve::{Instances, Tree};
+
+/// Which entry points a plan starts from.
+#[derive(Clone, Debug)]
+pub enum Roots {
+    /// All of the root module.
+    Main,
+    /// One of an instance.
+    Entry {
+        /// The instance.
+        instance: usize,
+        /// Its entry point.
+        entry: String,
+    },
+}
+
+/// Plans a pass of a resolved tree.
+///
+/// # Errors
+/// Units do not parse, do not fit together, or call each other in a circle.
+pub fn plan(catalog: &Catalog, tree: Tree, instances: Instances, roots: &Roots) -> Result<Plan, Report> {
+    let mut reach = Reach {
+        catalog,
+        tree,
+        instances,
+        homes: Vec::new(),
+        interfaces: HashMap::new(),
+        functions: Vec::new(),
+        memo: HashMap::new(),
+        stack: Vec::new(),
+    };
+    reach.instance_homes()?;
+    reach.roots(roots)?;
+    let Reach { tree, instances, homes, interfaces, functions, .. } = reach;
+    let mut structs = Structs::default();
+    for home in 0..homes.len() {
+        structs.add(&homes, home, |category| interfaces.get(category).copied());
+    }
+    let mut plan = Plan {
+        tree,
+        instances,
+        homes,
+        functions,
+        structs,
+        live_params: Default::default(),
+        globals: Vec::new(),
+        blocks: Vec::new(),
+        names: HashMap::new(),
+    };
+    live::analyse(&mut plan);
+    bindings::allocate(catalog, &mut plan)?;
+    names::assign(&mut plan);
+    Ok(plan)
+}
+
+/// A place in the plan where a call leads.
+type Target = (usize, Body);
+
+struct Reach<'c> {
+    catalog: &'c Catalog,
+    tree: Tree,
+    instances: Instances,
+    homes: Vec<Home>,
+    interfaces: HashMap<String, usize>,
+    functions: Vec<Planned>,
+    /// Finished functions.
+    memo: HashMap<Target, usize>,
+    /// Functions being visited, outermost first, for finding circles.
+    stack: Vec<Target>,
+}
+
+impl Reach<'_> {
+    fn instance_homes(&mut self) -> Result<(), Report> {
+        for index in 0..self.instances.list.len() {
+            let instance = &self.instances.list[index];
+            let node = &self.tree.nodes[instance.node];
+            let unit = self.catalog.unit(&node.module, &node.constants)?;
+            let prefix = instance.name.clone();
+            self.push_home(unit, Some(index), prefix);
+        }
+        // Every interface that a unit names.
+        let mut names: Vec<String> = Vec::new();
+        for home in &self.homes {
+            let mut own: Vec<&String> = home
+                .unit
+                .composed
+                .names
+                .values()
+                .filter_map(|o| match o {
+                    Origin::Interface(category) | Origin::Offered { interface: category, .. } => Some(category),
+                    _ => None,
+                })
+                .collect();
+            own.extend(home.unit.needs.slots.iter().map(|s| &s.interface));
+            own.extend(&home.unit.needs.implements);
+            names.extend(own.into_iter().cloned());
+        }
+        names.sort();
+        names.dedup();
+        let mut next = 0;
+        while next < names.len() {
+            let name = names[next].clone();
+            next += 1;
+            if self.interfaces.contains_key(&name) {
+                continue;
+            }
+            let unit = self.catalog.interface_unit(&name)?;
+            names.extend(unit.needs.uses.iter().cloned());
+            let home = self.push_home(unit, None, String::new());
+            self.interfaces.insert(name, home);
+        }
+        Ok(())
+    }
+
+    fn push_home(&mut self, unit: Arc<Unit>, instance: Option<usize>, prefix: String) -> usize {
+        let index = self.homes.len();
+        let base = self.homes.last().map_or(1, |h| h.base + h.unit.composed.text.len() as u32 + 1);
+        let first = self.homes.iter().position(|h| Arc::ptr_eq(&h.unit, &unit)).unwrap_or(index);
+        self.homes.push(Home { unit, base, instance, first, prefix });
+        index
+    }
+
+    fn roots(&mut self, roots: &Roots) -> Result<(), Report> {
+        let (home, wanted) = match roots {
+            Roots::Main => (0, None),
+            Roots::Entry { instance, entry } => (*instance, Some(entry)),
+        };
+        let unit = Arc::clone(&self.homes[home].unit);
+        let node = &self.tree.nodes[self.instances.list[home].node];
+        let mut found = false;
+        for (index, entry) in unit.ir.entry_points.iter().enumerate() {
+            // The root of a tree runs its stages; a module further in is only asked for one of its passes.
+            if wanted.is_none_or(|w| *w == entry.name) {
+                found = true;
+                self.visit((home, Body::Entry(index)), None)?;
+            }
+        }
+        if found {
+            return Ok(());
+        }
+        let diagnostic = match wanted {
+            None => Diagnostic::new(codes::NOT_A_ROOT, format!("`{}` has no entry points", node.module.name))
+                .at(&node.place.file, node.place.span(), "a pass is needed here")
+                .note("a subtree without entry points can be probed, not emitted"),
+            Some(entry) => Diagnostic::new(codes::BAD_DISPATCH, format!("`{}` has no entry point `{entry}`", node.module.name))
+                .at(&unit.file, 0..0, "not in this file"),
+        };
+        Err(diagnostic.into())
+    }
+
+    fn visit(&mut self, target: Target, caller: Option<usize>) -> Result<usize, Report> {
+        if let Some(&done) = self.memo.get(&target) {
+            return Ok(done);
+        }
+        if self.stack.contains(&target) {
+            return Err(self.circle(&target));
+        }
+        self.stack.push(target.clone());
+        let (home, body) = target.clone();
+        let mut calls = HashMap::new();
+        let mut targets = Vec::new();
+        if let Body::Combined { slot, function, .. } = &body {
+            for next in self.list_targets(home, slot, function)? {
+                targets.push(self.visit(next, None)?);
+            }
+        } else {
+            let unit = Arc::clone(&self.homes[home].unit);
+            let function = match body {
+                Body::Entry(index) => &unit.ir.entry_points[index].function,
+                Body::Function(handle) => &unit.ir.functions[handle],
+                Body::Combined { .. } => return Ok(0),
+            };
+            let mut called = Vec::new();
+            calls_in(&unit.ir, function, &function.body, &mut called);
+            for handle in called {
+                if !calls.contains_key(&handle) {
+                    let next = self.call(home, handle)?;
+                    let id = self.visit(next, None)?;
+                    calls.insert(handle, id);
+                }
+            }
+        }
+        self.stack.pop();
+        let id = self.functions.len();
+        for &callee in calls.values().chain(&targets) {
+            // Callees are finished before their callers: whoever asks first is the reason why.
+            self.functions[callee].caller.get_or_insert(id);
+        }
+        self.functions.push(Planned { home, body, calls, targets, caller, live: Vec::new(), name: String::new() });
+        self.memo.insert(target, id);
+        Ok(id)
+    }
+
+    /// Where a call of a unit's function leads from a home.
+    fn call(&mut self, home: usize, handle: Handle<naga::Function>) -> Result<Target, Report> {
+        let unit = Arc::clone(&self.homes[home].unit);
+        let name = unit.ir.functions[handle].name.clone().unwrap_or_default();
+        match unit.origin(&name) {
+            Some(Origin::Interface(category)) => self.neutral(category, &name),
+            Some(Origin::Slot { slot, function }) => self.slot(home, slot, function, handle),
+            Some(Origin::Offered { interface, function }) => self.offered(home, interface, function),
+            _ if unit.dependent[handle.index()] => Ok((home, Body::Function(handle))),
+            _ => Ok((self.homes[home].first, Body::Function(handle))),
+        }
+    }
+
+    /// An interface's own body.
+    fn neutral(&self, category: &str, function: &str) -> Result<Target, Report> {
+        let home = self.interfaces.get(category).copied();
+        let found = home.and_then(|h| Some((h, Body::Function(*self.homes[h].unit.functions.get(function)?))));
+        found.ok_or_else(|| {
+            Diagnostic::new(codes::MISSING_FUNCTION, format!("the interface `{category}` has no function `{function}`")).into()
+        })
+    }
+
+    fn slot(&mut self, home: usize, slot: &str, function: &str, stub: Handle<naga::Function>) -> Result<Target, Report> {
+        let node = self.node(home);
+        let Some(filled) = node.and_then(|n| self.tree.nodes[n].fills.get(slot)).cloned() else {
+            return self.neutral(slot, function);
+        };
+        match filled.nodes[..] {
+            [] => self.neutral(&filled.interface, function),
+            [one] => self.implementation(one, function),
+            _ => {
+                let rule = self.rule(home, &filled.interface, slot, function)?;
+                Ok((home, Body::Combined { stub, rule, slot: slot.to_owned(), function: function.to_owned() }))
+            }
+        }
+    }
+
+    fn node(&self, home: usize) -> Option<usize> {
+        Some(self.instances.list[self.homes[home].instance?].node)
+    }
+
+    fn rule(&self, home: usize, interface: &str, slot: &str, function: &str) -> Result<Combine, Report> {
+        let category = self.catalog.category(interface);
+        if let Some(rule) = category.and_then(|c| c.manifest.combine.get(function)) {
+            return Ok(*rule);
+        }
+        let mut diagnostic =
+            Diagnostic::new(codes::NOT_COMBINABLE, format!("`{interface}` does not say how results of `{function}` combine in the slot `{slot}`"));
+        if let Some(node) = self.node(home) {
+            let place = &self.tree.nodes[node].place;
+            diagnostic = diagnostic.at(&place.file, place.span(), "several modules stand in that slot here");
+        }
+        Err(diagnostic.note("`combine` in the interface's category.ron names the rule: Sum, Product or Chain").into())
+    }
+
+    fn list_targets(&self, home: usize, slot: &str, function: &str) -> Result<Vec<Target>, Report> {
+        let Some(node) = self.node(home) else { return Ok(Vec::new()) };
+        let nodes = self.tree.nodes[node].fills.get(slot).map(|f| f.nodes.clone()).unwrap_or_default();
+        nodes.into_iter().map(|n| self.implementation(n, function)).collect()
+    }
+
+    fn implementation(&self, node: usize, function: &str) -> Result<Target, Report> {
+        let home = self.instances.of_node[node];
+        let unit = &self.homes[home].unit;
+        match unit.functions.get(function) {
+            Some(&handle) if unit.dependent[handle.index()] => Ok((home, Body::Function(handle))),
+            Some(&handle) => Ok((self.homes[home].first, Body::Function(handle))),
+            None => Err(Diagnostic::new(codes::MISSING_FUNCTION, format!("the module does not define `{function}`"))
+                .at(&unit.file, 0..0, "in this file")
+                .into()),
+        }
+    }
+
+    /// A function that the owner of the slot offers: its own, one of its slots', or one that it is offered itself.
+    fn offered(&mut self, home: usize, interface: &str, function: &str) -> Result<Target, Report> {
+        let parent = self.homes[home].instance.and_then(|i| self.instances.list[i].parent);
+        let Some(owner) = parent else { return self.neutral(interface, function) };
+        let unit = Arc::clone(&self.homes[owner].unit);
+        let found = unit.functions.get(function).copied();
+        match (unit.origin(function), found) {
+            (Some(Origin::Own | Origin::Slot { .. } | Origin::Offered { .. } | Origin::Interface(_)), Some(handle)) => {
+                self.same_signature(home, owner, function, handle)?;
+                self.call(owner, handle)
+            }
+            _ if self.tree.nodes[self.instances.list[owner].node].module.category.is_empty() => self.neutral(interface, function),
+            _ => {
+                let node = &self.tree.nodes[self.instances.list[home].node];
+                Err(Diagnostic::new(codes::MISSING_FUNCTION, format!("the module does not define `{function}`, which `{}` calls", node.module.name))
+                    .at(&unit.file, 0..0, "in this file")
+                    .at(&node.place.file, node.place.span(), format!("`{}` fills one of its slots here", node.module.name))
+                    .note(format!("modules of `{}` call functions of the module that they serve", node.module.category))
+                    .into())
+            }
+        }
+    }
+
+    fn same_signature(&self, home: usize, owner: usize, function: &str, offered: Handle<naga::Function>) -> Result<(), Report> {
+        let (caller, unit) = (&self.homes[home].unit, &self.homes[owner].unit);
+        let Some(&expected) = caller.functions.get(function) else { return Ok(()) };
+        crate::parse::same_signature(unit, offered, caller, expected, function)
+    }
+
+    fn circle(&self, target: &Target) -> Report {
+        let first = self.stack.iter().position(|t| t == target).unwrap_or(0);
+        let mut names: Vec<String> = self.stack[first..].iter().map(|t| self.target_name(t)).collect();
+        names.push(self.target_name(target));
+        let mut diagnostic = Diagnostic::new(codes::RECURSION, "functions of modules call each other in a circle");
+        for (home, body) in &self.stack[first..] {
+            let unit = &self.homes[*home].unit;
+            if let Body::Function(handle) = body {
+                let name = unit.ir.functions[*handle].name.as_deref().unwrap_or_default();
+                if let Some(item) = unit.scan.item(name) {
+                    diagnostic = diagnostic.at(&unit.file, item.name_span.clone(), "part of the circle");
+                }
+            }
+        }
+        diagnostic.note(format!("the circle is {}", names.join(" -> "))).note("WGSL has no recursion").into()
+    }
+
+    fn target_name(&self, (home, body): &Target) -> String {
+        let home = &self.homes[*home];
+        let module = home.instance.map_or_else(
+            || home.unit.interface.clone().unwrap_or_default(),
+            |i| self.tree.nodes[self.instances.list[i].node].module.name.clone(),
+        );
+        let function = match body {
+            Body::Function(handle) => home.unit.ir.functions[*handle].name.clone().unwrap_or_default(),
+            Body::Entry(index) => home.unit.ir.entry_points[*index].name.clone(),
+            Body::Combined { function, .. } => function.clone(),
+        };
+        format!("{module}::{function}")
+    }
+}
+
+/// Functions called in the live branches of a body, in order.
+fn calls_in(ir: &naga::Module, function: &naga::Function, block: &Block, calls: &mut Vec<Handle<naga::Function>>) {
+    for (statement, _) in reachable(ir, function, block) {
+        match statement {
+            Statement::Call { function, .. } => calls.push(*function),
+            Statement::Block(inner) => calls_in(ir, function, inner, calls),
+            Statement::If { condition, accept, reject } => {
+                let choice = choice(ir, function, *condition);
+                if choice != Choice::Reject {
+                    calls_in(ir, function, accept, calls);
+                }
+                if choice != Choice::Accept {
+                    calls_in(ir, function, reject, calls);
+                }
+            }
+            Statement::Switch { cases, .. } => cases.iter().for_each(|c| calls_in(ir, function, &c.body, calls)),
+            Statement::Loop { body, continuing, .. } => {
+                calls_in(ir, function, body, calls);
+                calls_in(ir, function, continuing, calls);
+            }
+            _ => {}
+        }
+    }
+}
+

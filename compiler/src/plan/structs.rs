@@ -1,0 +1,80 @@
+//! Structs across units, and which of their members anybody reads.
+
+use std::collections::HashMap;
+
+use naga::{Handle, Type};
+
+use super::Home;
+use crate::parse::StructKey;
+
+/// A struct of the plan.
+#[derive(Debug)]
+pub struct Struct {
+    /// Home that declares it.
+    pub home: usize,
+    /// Name there.
+    pub name: String,
+    /// Whether a host or the language fixes its layout.
+    pub fixed: bool,
+    /// Which members are alive.
+    pub live: Vec<bool>,
+}
+
+/// All structs of the units in a plan.
+#[derive(Debug, Default)]
+pub struct Structs {
+    /// The structs.
+    pub list: Vec<Struct>,
+    /// By home and type handle.
+    ids: HashMap<(usize, Handle<Type>), usize>,
+    by_key: HashMap<(usize, String), usize>,
+}
+
+impl Structs {
+    /// Adds the structs of a home. `interface_home` finds the home of a category's interface, if it is in the plan.
+    pub fn add(&mut self, homes: &[Home], home: usize, interface_home: impl Fn(&str) -> Option<usize>) {
+        let unit = &homes[home].unit;
+        for (&handle, StructKey { interface, name }) in &unit.structs {
+            let declared = interface.as_deref().map_or(Some(homes[home].first), &interface_home).unwrap_or(homes[home].first);
+            let members = match &unit.ir.types[handle].inner {
+                naga::TypeInner::Struct { members, .. } => members.len(),
+                _ => 0,
+            };
+            let id = *self.by_key.entry((declared, name.clone())).or_insert_with(|| {
+                self.list.push(Struct { home: declared, name: name.clone(), fixed: false, live: vec![false; members] });
+                self.list.len() - 1
+            });
+            self.list[id].fixed |= unit.fixed_structs.contains(&StructKey { interface: interface.clone(), name: name.clone() });
+            self.ids.insert((home, handle), id);
+        }
+    }
+
+    /// The struct behind a type of a home's unit.
+    pub fn id(&self, home: usize, ty: Handle<Type>) -> Option<usize> {
+        self.ids.get(&(home, ty)).copied()
+    }
+
+    /// The struct of this name that a home declares.
+    pub fn named(&self, home: usize, name: &str) -> Option<usize> {
+        self.by_key.get(&(home, name.to_owned())).copied()
+    }
+
+    /// Whether a member is alive.
+    pub fn is_live(&self, id: usize, member: u32) -> bool {
+        let s = &self.list[id];
+        s.fixed || s.live.get(member as usize).copied().unwrap_or(true)
+    }
+
+    /// Makes a member alive; says whether that is news.
+    pub fn enliven(&mut self, id: usize, member: u32) -> bool {
+        match self.list[id].live.get_mut(member as usize) {
+            Some(live) => !std::mem::replace(live, true),
+            None => false,
+        }
+    }
+
+    /// A member's index among the live ones.
+    pub fn new_index(&self, id: usize, member: u32) -> u32 {
+        (0..member).filter(|&m| self.is_live(id, m)).count() as u32
+    }
+}

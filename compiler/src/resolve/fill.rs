@@ -1,0 +1,216 @@
+//! Filling slots, from the root down.
+
+use std::sync::Arc;
+
+use indexmap::IndexMap;
+
+use super::{Filled, Place, Tree, TreeNode, rules};
+use crate::catalog::{Catalog, Module};
+use crate::diagnostics::{Diagnostic, Report, codes, nearest};
+use crate::limits;
+use crate::manifest::spans::Step;
+use crate::manifest::{Arity, Filling, Node, ParamMode, Slot, Typed, Value, typed};
+use crate::program::Recipe;
+
+/// Resolves a recipe.
+///
+/// # Errors
+/// A name, slot, parameter or rule is wrong; the tree is too deep or too large.
+pub fn resolve(catalog: &Catalog, recipe: &Recipe) -> Result<Tree, Report> {
+    let place = Place { file: Arc::clone(&recipe.source), path: Vec::new() };
+    let module = catalog.module_at(&recipe.root.module, None, &place)?;
+    resolve_root(catalog, module, &recipe.root, place)
+}
+
+/// Resolves a tree whose root module is given.
+pub fn resolve_root(catalog: &Catalog, module: Arc<Module>, root: &Node, place: Place) -> Result<Tree, Report> {
+    let mut resolver = Resolver { catalog, tree: Tree { nodes: Vec::new() }, defaults: Vec::new() };
+    resolver.node(module, root, None, "main".to_owned(), place, 0)?;
+    rules::check(&resolver.tree)?;
+    Ok(resolver.tree)
+}
+
+struct Resolver<'a> {
+    catalog: &'a Catalog,
+    tree: Tree,
+    /// Modules whose defaults are being expanded, outermost first.
+    defaults: Vec<String>,
+}
+
+impl Resolver<'_> {
+    fn node(
+        &mut self,
+        module: Arc<Module>,
+        node: &Node,
+        parent: Option<usize>,
+        path: String,
+        place: Place,
+        depth: usize,
+    ) -> Result<usize, Report> {
+        if depth > limits::TREE_DEPTH {
+            return Err(Diagnostic::new(codes::TREE_TOO_DEEP, format!("the tree is deeper than {} slots", limits::TREE_DEPTH))
+                .at(&place.file, place.span(), "here it goes too deep")
+                .into());
+        }
+        if self.tree.nodes.len() >= limits::INSTANCES {
+            return Err(Diagnostic::new(codes::TOO_MANY_INSTANCES, format!("the tree has more than {} modules", limits::INSTANCES))
+                .at(&place.file, place.span(), "with this one")
+                .into());
+        }
+        let constants = constants(&module, node, &place)?;
+        let index = self.tree.nodes.len();
+        if let Some(label) = &node.label {
+            if !is_identifier(label) {
+                return Err(Diagnostic::new(codes::BAD_LABEL, format!("the label `{label}` is no identifier"))
+                    .at(&place.file, place.then(&[Step::Key("label".into())]).span(), "letters, digits and underscores, not a digit first")
+                    .into());
+            }
+        }
+        self.tree.nodes.push(TreeNode {
+            module: Arc::clone(&module),
+            parent,
+            path: path.clone(),
+            fills: IndexMap::new(),
+            constants,
+            label: node.label.clone(),
+            place: place.clone(),
+        });
+        self.unknown_slots(&module, node, &place)?;
+        for (name, slot) in &module.manifest.slots {
+            let nodes = self.slot(index, &module, node, (name, slot), &path, &place, depth)?;
+            let filled = Filled { arity: slot.arity, interface: slot.interface.clone(), nodes };
+            self.tree.nodes[index].fills.insert(name.clone(), filled);
+        }
+        Ok(index)
+    }
+
+    fn unknown_slots(&self, module: &Module, node: &Node, place: &Place) -> Result<(), Report> {
+        for name in node.fill.keys() {
+            if !module.manifest.slots.contains_key(name) {
+                let known: Vec<&str> = module.manifest.slots.keys().map(String::as_str).collect();
+                let span = place.then(&[Step::Key("fill".into()), Step::Key(name.clone())]).key_span();
+                let mut diagnostic = Diagnostic::new(codes::UNKNOWN_SLOT, format!("`{}` has no slot `{name}`", module.name))
+                    .at(&place.file, span, "no such slot");
+                if let Some(near) = nearest(name, known.iter().copied()) {
+                    diagnostic = diagnostic.note(format!("did you mean `{near}`?"));
+                }
+                let list = if known.is_empty() { "it has none".to_owned() } else { format!("it has: {}", known.join(", ")) };
+                return Err(diagnostic.note(list).into());
+            }
+        }
+        Ok(())
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn slot(
+        &mut self,
+        owner: usize,
+        module: &Arc<Module>,
+        node: &Node,
+        (name, slot): (&String, &Slot),
+        path: &str,
+        place: &Place,
+        depth: usize,
+    ) -> Result<Vec<usize>, Report> {
+        let by_recipe = node.fill.get(name);
+        let (filling, at) = match (by_recipe, &slot.default) {
+            (Some(filling), _) => (filling.clone(), place.then(&[Step::Key("fill".into()), Step::Key(name.clone())])),
+            (None, Some(default)) => {
+                let at = Place { file: Arc::clone(&module.source), path: vec![Step::Key("slots".into()), Step::Key(name.clone()), Step::Key("default".into())] };
+                if let Some(first) = self.defaults.iter().position(|m| *m == module.name) {
+                    let mut circle = self.defaults[first..].to_vec();
+                    circle.push(module.name.clone());
+                    return Err(Diagnostic::new(codes::CYCLIC_TREE, format!("the defaults of `{}` lead back to itself", module.name))
+                        .at(&at.file, at.span(), "this default is part of the circle")
+                        .note(format!("the circle is {}", circle.join(" -> ")))
+                        .note("fill the slot in the recipe, or take one of the defaults away")
+                        .into());
+                }
+                (default.clone(), at)
+            }
+            (None, None) if slot.arity == Arity::Single => {
+                let fits = self.catalog.fits(&slot.interface);
+                return Err(Diagnostic::new(codes::MISSING_FILLING, format!("nothing fills the slot `{name}` of `{}`", module.name))
+                    .at(&place.file, place.span(), format!("`{name}` is missing here"))
+                    .note(format!("modules of `{}` fit: {}", slot.interface, list_or_none(&fits)))
+                    .into());
+            }
+            (None, None) => return Ok(Vec::new()),
+        };
+        let many = matches!(filling, Filling::Many(_));
+        let nodes = match filling {
+            Filling::One(node) => vec![node],
+            Filling::Many(nodes) => nodes,
+        };
+        let takes = match slot.arity {
+            Arity::Single => 1..=1,
+            Arity::Optional => 0..=1,
+            Arity::List => 0..=limits::LIST_LENGTH,
+        };
+        if !takes.contains(&nodes.len()) {
+            return Err(Diagnostic::new(codes::TOO_MANY_FILLINGS, format!("{} modules in the slot `{name}` of `{}`", nodes.len(), module.name))
+                .at(&at.file, at.span(), format!("it takes {}", if slot.arity == Arity::Single { "exactly one" } else { "fewer" }))
+                .into());
+        }
+        let is_default = by_recipe.is_none();
+        if is_default {
+            self.defaults.push(module.name.clone());
+        }
+        let mut filled = Vec::with_capacity(nodes.len());
+        for (index, child) in nodes.iter().enumerate() {
+            let at = if many { at.then(&[Step::Index(index)]) } else { at.clone() };
+            let path = if slot.arity == Arity::List { format!("{path}.{name}[{index}]") } else { format!("{path}.{name}") };
+            let module = self.catalog.module_at(&child.module, Some((&slot.interface, name)), &at)?;
+            filled.push(self.node(module, child, Some(owner), path, at, depth + 1)?);
+        }
+        if is_default {
+            self.defaults.pop();
+        }
+        Ok(filled)
+    }
+}
+
+fn list_or_none(names: &[String]) -> String {
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// Parameters that are constants in this node.
+fn constants(module: &Module, node: &Node, place: &Place) -> Result<IndexMap<String, (Value, Typed)>, Report> {
+    let manifest = &module.manifest;
+    for name in node.freeze.keys() {
+        if !manifest.params.contains_key(name) {
+            let at = place.then(&[Step::Key("freeze".into()), Step::Key(name.clone())]);
+            if manifest.instances.contains_key(name) {
+                return Err(Diagnostic::new(codes::INSTANCE_FIELD_FROZEN, format!("`{name}` differs from instance to instance"))
+                    .at(&at.file, at.key_span(), "a recipe cannot freeze it")
+                    .into());
+            }
+            let mut diagnostic =
+                Diagnostic::new(codes::UNKNOWN_PARAM, format!("`{}` has no parameter `{name}`", module.name)).at(&at.file, at.key_span(), "no such parameter");
+            if let Some(near) = nearest(name, manifest.params.keys().map(String::as_str)) {
+                diagnostic = diagnostic.note(format!("did you mean `{near}`?"));
+            }
+            let known: Vec<String> = manifest.params.keys().cloned().collect();
+            return Err(diagnostic.note(format!("its parameters: {}", list_or_none(&known))).into());
+        }
+    }
+    let mut constants = IndexMap::new();
+    for (name, param) in &manifest.params {
+        let (value, at) = match node.freeze.get(name) {
+            Some(value) => (value, place.then(&[Step::Key("freeze".into()), Step::Key(name.clone())])),
+            None if param.mode == ParamMode::Constant => (
+                &param.default,
+                Place { file: Arc::clone(&module.source), path: vec![Step::Key("params".into()), Step::Key(name.clone()), Step::Key("default".into())] },
+            ),
+            None => continue,
+        };
+        let typed = typed(param, value).map_err(|error| error.at(name, &at.file, at.span()))?;
+        constants.insert(name.clone(), (value.clone(), typed));
+    }
+    Ok(constants)
+}
+
+fn is_identifier(text: &str) -> bool {
+    let mut letters = text.chars();
+    letters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_') && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}

@@ -1,0 +1,68 @@
+//! `requires` and `excludes`.
+
+use super::{Tree, TreeNode};
+use crate::diagnostics::{Diagnostic, Report, codes};
+use crate::manifest::{Among, Rule};
+
+/// Checks every rule of every module in the tree.
+pub fn check(tree: &Tree) -> Result<(), Report> {
+    for (index, node) in tree.nodes.iter().enumerate() {
+        for rule in &node.module.manifest.rules {
+            check_rule(tree, index, node, rule)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_rule(tree: &Tree, index: usize, node: &TreeNode, rule: &Rule) -> Result<(), Report> {
+    let (tag, among, because, wanted) = match rule {
+        Rule::Requires { tag, among, because } => (tag, *among, because, true),
+        Rule::Excludes { tag, among, because } => (tag, *among, because, false),
+    };
+    let found = tree.nodes.iter().enumerate().find(|&(other, candidate)| {
+        let there = match among {
+            Among::Parent => node.parent == Some(other),
+            Among::Children => other != index && is_below(tree, other, index),
+            Among::Tree => other != index,
+        };
+        there && has_tag(candidate, tag)
+    });
+    let name = &node.module.name;
+    let place = match among {
+        Among::Parent => "the module whose slot it fills",
+        Among::Children => "the modules in its slots",
+        Among::Tree => "the tree",
+    };
+    // A subtree that stands alone has no parent to judge by.
+    if wanted && among == Among::Parent && node.parent.is_none_or(|p| tree.nodes[p].module.category.is_empty()) {
+        return Ok(());
+    }
+    match (wanted, found) {
+        (true, None) => Err(Diagnostic::new(codes::RULE_BROKEN, format!("`{name}` requires `{tag}` in {place}: {because}"))
+            .at(&node.place.file, node.place.span(), format!("`{name}` stands here"))
+            .into()),
+        (false, Some((_, other))) => Err(Diagnostic::new(codes::RULE_BROKEN, format!("`{name}` excludes `{tag}` in {place}: {because}"))
+            .at(&node.place.file, node.place.span(), format!("`{name}` stands here"))
+            .at(&other.place.file, other.place.span(), format!("`{}` stands here", other.module.name))
+            .into()),
+        _ => Ok(()),
+    }
+}
+
+fn is_below(tree: &Tree, mut node: usize, ancestor: usize) -> bool {
+    while let Some(parent) = tree.nodes[node].parent {
+        if parent == ancestor {
+            return true;
+        }
+        node = parent;
+    }
+    false
+}
+
+fn has_tag(node: &TreeNode, tag: &str) -> bool {
+    let module = &node.module;
+    module.name == tag
+        || module.category == tag
+        || module.manifest.properties.iter().any(|p| p == tag)
+        || module.manifest.instances.values().any(|f| f.role.as_deref() == Some(tag))
+}
