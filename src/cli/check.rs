@@ -143,6 +143,7 @@ fn subfolders(folder: &Path) -> Vec<PathBuf> {
 fn check(context: &Context, thing: &Thing) -> Result<(), Failure> {
     match thing {
         Thing::Module(name) => {
+            context.catalog.check_module(name)?;
             let module = Arc::clone(context.catalog.module(name)?);
             tree(context, &Recipe::from(alone(context, &module, 0)?))?;
             cases(context, name)
@@ -163,7 +164,7 @@ fn cases(context: &Context, module: &str) -> Result<(), Failure> {
 }
 
 /// Compiles all that a tree can be asked for: the root's entry points, or each function of its interface, and every pass.
-pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
+fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     let root = context.catalog.module(&recipe.root.module)?;
     let functions = interface::functions(context.library.as_ref(), &context.catalog, &root.category)?;
     let mut passes = BTreeSet::new();
@@ -180,6 +181,20 @@ pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     for pass in &passes {
         context.catalog.compile(recipe, pass)?;
     }
+    Ok(())
+}
+
+/// Links a tree once, so that what is wrong with it is said with its place.
+///
+/// # Errors
+/// That.
+pub fn links(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
+    let root = context.catalog.module(&recipe.root.module)?;
+    let functions = interface::functions(context.library.as_ref(), &context.catalog, &root.category)?;
+    match functions.first() {
+        None => context.catalog.compile(recipe, super::tree::ROOT)?,
+        Some(function) => context.catalog.compile_probe(recipe, &function.name)?,
+    };
     Ok(())
 }
 

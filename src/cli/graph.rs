@@ -21,6 +21,7 @@ pub struct Options {
 /// The recipe is wrong.
 pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
     let recipe = input::recipe(&options.recipe)?;
+    super::check::links(context, &recipe)?;
     let tree = Tree::of(&context.catalog, &recipe.root)?;
     match (options.dot, context.format) {
         (true, _) => say(&dot(&tree)),

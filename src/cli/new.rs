@@ -58,7 +58,7 @@ pub fn run(modules: &[PathBuf], format: Format, options: &Options) -> Result<(),
         ("README.md".to_owned(), readme(category, name)),
         ("cases.ron".to_owned(), CASES.to_owned()),
     ];
-    make(&folder, &files).map_err(|error| Failure::message(format!("{}: cannot be written: {error}", folder.display())))?;
+    make(&options.dir, &folder, &files).map_err(|error| Failure::message(format!("{}: cannot be written: {error}", folder.display())))?;
     let names: Vec<String> = files.iter().map(|(file, _)| folder.join(file).display().to_string()).collect();
     match format {
         Format::Text => say(&names.join("\n")),
@@ -66,15 +66,15 @@ pub fn run(modules: &[PathBuf], format: Format, options: &Options) -> Result<(),
     }
 }
 
-/// Writes the folder under a temporary name, then renames it, so that there is all of it or nothing.
-fn make(folder: &Path, files: &[(String, String)]) -> std::io::Result<()> {
-    let parent = folder.parent().unwrap_or(Path::new("."));
-    std::fs::create_dir_all(parent)?;
+/// Writes the folder under a temporary name outside its category, where it is no module yet, then renames it:
+/// there is all of it or nothing.
+fn make(root: &Path, folder: &Path, files: &[(String, String)]) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder.parent().unwrap_or(root))?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(".shadewright-");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    let half = builder.tempdir_in(parent)?;
+    let half = builder.tempdir_in(root)?;
     for (file, text) in files {
         std::fs::write(half.path().join(file), text)?;
     }

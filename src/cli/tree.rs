@@ -5,7 +5,7 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 use serde::Serialize;
 use shadewright::compiler::manifest::{Arity, Filling, Node, Value};
-use shadewright::compiler::{Catalog, Module};
+use shadewright::compiler::{Catalog, Module, Report};
 
 use super::failure::Failure;
 use super::text::nearest;
@@ -55,7 +55,7 @@ impl Tree {
     /// # Errors
     /// A module is unknown, or the defaults go round in a circle.
     pub fn of(catalog: &Catalog, root: &Node) -> Result<Self, Failure> {
-        grow(catalog, root, ROOT.to_owned(), false, 0)
+        grow(catalog, root, None, ROOT.to_owned(), false, 0)
     }
 
     /// This node and everything below it, parents first.
@@ -68,11 +68,20 @@ impl Tree {
     }
 }
 
-fn grow(catalog: &Catalog, node: &Node, path: String, by_default: bool, depth: usize) -> Result<Tree, Failure> {
+/// The module that a node names: of a slot's own category, where there is one of that name.
+fn module_of<'a>(catalog: &'a Catalog, node: &Node, interface: Option<&str>) -> Result<&'a Arc<Module>, Report> {
+    let full = interface.map(|interface| format!("{interface}/{}", node.module));
+    match full.map(|full| catalog.module(&full)) {
+        Some(Ok(module)) => Ok(module),
+        _ => catalog.module(&node.module),
+    }
+}
+
+fn grow(catalog: &Catalog, node: &Node, interface: Option<&str>, path: String, by_default: bool, depth: usize) -> Result<Tree, Failure> {
     if depth > MAX_DEPTH {
         return Err(Failure::message(format!("{path}: the defaults of the slots go round in a circle")));
     }
-    let module = Arc::clone(catalog.module(&node.module)?);
+    let module = Arc::clone(module_of(catalog, node, interface)?);
     if let Some(unknown) = node.fill.keys().find(|name| !module.manifest.slots.contains_key(*name)) {
         return Err(Failure::message(format!("{path}: {}", no_slot(&module, unknown))));
     }
@@ -88,7 +97,7 @@ fn grow(catalog: &Catalog, node: &Node, path: String, by_default: bool, depth: u
                 Arity::List => format!("{path}.{name}[{index}]"),
                 Arity::Single | Arity::Optional => format!("{path}.{name}"),
             };
-            filled.push(grow(catalog, child, path, by_default, depth + 1)?);
+            filled.push(grow(catalog, child, Some(&slot.interface), path, by_default, depth + 1)?);
         }
         slots.push(SlotTree {
             name: name.clone(),
@@ -131,10 +140,13 @@ pub fn freeze(catalog: &Catalog, root: &mut Node, typed: &str) -> Result<(), Fai
     }
     let param = steps.pop().unwrap_or_default();
     let mut node = root;
+    let mut interface = None;
     for step in steps {
-        node = child(catalog, node, step).map_err(|why| Failure::message(format!("--freeze {typed}: {why}")))?;
+        let wrong = |why| Failure::message(format!("--freeze {typed}: {why}"));
+        let (next, of) = child(catalog, node, interface.as_deref(), step).map_err(wrong)?;
+        (node, interface) = (next, Some(of));
     }
-    let module = catalog.module(&node.module)?;
+    let module = module_of(catalog, node, interface.as_deref())?;
     if !module.manifest.params.contains_key(param) {
         let near = nearest(param, module.manifest.params.keys().map(String::as_str));
         let name = &module.name;
@@ -156,8 +168,8 @@ fn no_slot(module: &Module, name: &str) -> String {
     format!("`{}` has no slot `{name}`{near}", module.name)
 }
 
-/// The node in a slot, which is filled with its default first where the recipe says nothing.
-fn child<'a>(catalog: &Catalog, node: &'a mut Node, step: &str) -> Result<&'a mut Node, String> {
+/// The node in a slot, which is filled with its default first where the recipe says nothing, and the slot's interface.
+fn child<'a>(catalog: &Catalog, node: &'a mut Node, interface: Option<&str>, step: &str) -> Result<(&'a mut Node, String), String> {
     let (name, index) = match step.split_once('[') {
         None => (step, 0),
         Some((name, rest)) => {
@@ -165,7 +177,7 @@ fn child<'a>(catalog: &Catalog, node: &'a mut Node, step: &str) -> Result<&'a mu
             (name, index.ok_or_else(|| format!("`{step}` should be `slot[number]`"))?)
         }
     };
-    let module = catalog.module(&node.module).map_err(|report| report.to_string())?;
+    let module = module_of(catalog, node, interface).map_err(|report| report.to_string())?;
     let Some(slot) = module.manifest.slots.get(name) else {
         return Err(no_slot(module, name));
     };
@@ -179,5 +191,6 @@ fn child<'a>(catalog: &Catalog, node: &'a mut Node, step: &str) -> Result<&'a mu
         Some(Filling::One(node)) => (index == 0).then_some(node),
         Some(Filling::Many(nodes)) => nodes.get_mut(index),
     };
-    found.ok_or_else(|| format!("nothing stands in `{step}`"))
+    let found = found.ok_or_else(|| format!("nothing stands in `{step}`"))?;
+    Ok((found, slot.interface.clone()))
 }
