@@ -1,13 +1,17 @@
 //! All that a library declares, loaded once.
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use indexmap::IndexMap;
 
-use crate::diagnostics::Report;
+use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::library::Library;
-use crate::manifest::{CategoryManifest, ModuleManifest};
-use crate::program::{Program, Recipe};
+use crate::limits;
+use crate::manifest::{CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, parse_category, parse_module, typed};
+use crate::parse::scan::scan;
+use crate::parse::{Interface, Needs, SlotNeed, Unit, check_interface, compose, parse_unit};
+use crate::resolve::Place;
 
 /// A category with its name.
 #[derive(Debug)]
@@ -16,6 +20,8 @@ pub struct Category {
     pub name: String,
     /// Its declaration.
     pub manifest: CategoryManifest,
+    /// `category.ron`.
+    pub source: Arc<SourceFile>,
 }
 
 /// A module with its name.
@@ -23,31 +29,70 @@ pub struct Category {
 pub struct Module {
     /// Name of its folder.
     pub name: String,
-    /// Its category's name.
+    /// Its category's name; empty for modules that the compiler makes itself.
     pub category: String,
     /// Its declaration.
     pub manifest: ModuleManifest,
+    /// `module.ron`.
+    pub source: Arc<SourceFile>,
 }
+
+/// A parsed unit by what it was parsed from: module and constants.
+type UnitKey = (String, Vec<(String, String)>);
 
 /// The manifests of a library, and a cache of its parsed WGSL. Cheap to load, shared between threads.
 pub struct Catalog {
-    #[allow(dead_code)]
     library: Arc<dyn Library>,
     categories: IndexMap<String, Arc<Category>>,
     modules: Vec<Arc<Module>>,
+    interfaces: Mutex<HashMap<String, Arc<Interface>>>,
+    interface_units: Mutex<HashMap<String, Arc<Unit>>>,
+    units: Mutex<HashMap<UnitKey, Arc<Unit>>>,
+}
+
+impl std::fmt::Debug for Catalog {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Catalog").field("categories", &self.categories.len()).field("modules", &self.modules.len()).finish_non_exhaustive()
+    }
 }
 
 impl Catalog {
     /// Reads all manifests of the library. WGSL is read and parsed when a recipe first needs it.
     ///
+    /// A folder of the root is a category if it has a `category.ron`; other folders are none of ours.
+    ///
     /// # Errors
     /// A manifest is no RON, or says something that cannot be.
     pub fn load(library: Arc<dyn Library>) -> Result<Self, Report> {
-        Ok(Self {
+        let mut categories = Vec::new();
+        let mut modules = Vec::new();
+        let mut found = Vec::new();
+        for name in sorted(library.folders("")) {
+            let path = format!("{name}/category.ron");
+            let Some(text) = read(library.as_ref(), &path)? else { continue };
+            match parse_category(&path, &text) {
+                Ok(parsed) => {
+                    modules.extend(load_modules(library.as_ref(), &name, &mut found)?);
+                    categories.push(Arc::new(Category { name, manifest: parsed.value, source: parsed.file }));
+                }
+                Err(report) => found.extend(report.diagnostics),
+            }
+        }
+        Report::unless_empty(found)?;
+        categories.sort_by(|a, b| (a.manifest.order, &a.name).cmp(&(b.manifest.order, &b.name)));
+        let order: HashMap<&str, usize> = categories.iter().enumerate().map(|(i, c)| (c.name.as_str(), i)).collect();
+        modules.sort_by(|a: &Arc<Module>, b| {
+            (order.get(a.category.as_str()), &a.name).cmp(&(order.get(b.category.as_str()), &b.name))
+        });
+        let catalog = Self {
             library,
-            categories: IndexMap::new(),
-            modules: Vec::new(),
-        })
+            categories: categories.into_iter().map(|c| (c.name.clone(), c)).collect(),
+            modules,
+            interfaces: Mutex::default(),
+            interface_units: Mutex::default(),
+            units: Mutex::default(),
+        };
+        Ok(catalog)
     }
 
     /// Categories in the order in which lists show them.
@@ -55,9 +100,19 @@ impl Catalog {
         self.categories.values()
     }
 
+    /// The category of this name.
+    pub fn category(&self, name: &str) -> Option<&Arc<Category>> {
+        self.categories.get(name)
+    }
+
     /// Modules, sorted by category order and name.
     pub fn modules(&self) -> impl Iterator<Item = &Arc<Module>> {
         self.modules.iter()
+    }
+
+    /// Names of the modules that fit a slot of this interface.
+    pub fn fits(&self, interface: &str) -> Vec<String> {
+        self.modules.iter().filter(|m| m.category == interface).map(|m| m.name.clone()).collect()
     }
 
     /// The module of this name, or `category/name`.
@@ -65,30 +120,222 @@ impl Catalog {
     /// # Errors
     /// There is none (says the nearest names), or several categories have one.
     pub fn module(&self, name: &str) -> Result<&Arc<Module>, Report> {
-        self.modules
+        self.find(name, None).map_err(Report::from)
+    }
+
+    /// The module that a node of a recipe names, for a slot (interface and slot name) or as a root.
+    pub(crate) fn module_at(&self, name: &str, slot: Option<(&str, &str)>, place: &Place) -> Result<Arc<Module>, Report> {
+        self.find(name, slot).map(Arc::clone).map_err(|mut diagnostic| {
+            // The first place is the primary one: where the name was written.
+            let file = Arc::clone(&place.file);
+            let text = if diagnostic.code == codes::WRONG_CATEGORY { "does not fit here" } else { "named here" };
+            diagnostic.labels.insert(0, crate::diagnostics::Label { file, span: place.name_span(), text: text.to_owned() });
+            Report::from(diagnostic)
+        })
+    }
+
+    fn find(&self, name: &str, slot: Option<(&str, &str)>) -> Result<&Arc<Module>, Diagnostic> {
+        let (category, short) = match name.split_once('/') {
+            Some((category, short)) => (Some(category), short),
+            None => (None, name),
+        };
+        let all: Vec<&Arc<Module>> =
+            self.modules.iter().filter(|m| m.name == short && category.is_none_or(|c| c == m.category)).collect();
+        let Some((interface, slot)) = slot else {
+            return match all[..] {
+                [] => Err(self.unknown(name, None)),
+                [one] => Ok(one),
+                _ => {
+                    let full: Vec<String> = all.iter().map(|m| format!("`{}/{}`", m.category, m.name)).collect();
+                    Err(Diagnostic::new(codes::AMBIGUOUS_NAME, format!("several modules are called `{name}`"))
+                        .note(format!("write one of {}", full.join(", "))))
+                }
+            };
+        };
+        if let Some(module) = all.iter().find(|m| m.category == interface) {
+            return Ok(module);
+        }
+        match all.first() {
+            None => Err(self.unknown(name, Some(interface))),
+            Some(other) => {
+                let fits = self.fits(interface);
+                let fits = if fits.is_empty() { "none".to_owned() } else { fits.join(", ") };
+                Err(Diagnostic::new(
+                    codes::WRONG_CATEGORY,
+                    format!("`{}` is a module of `{}`; the slot `{slot}` takes modules of `{interface}`", other.name, other.category),
+                )
+                .note(format!("modules of `{interface}`: {fits}")))
+            }
+        }
+    }
+
+    fn unknown(&self, name: &str, interface: Option<&str>) -> Diagnostic {
+        let known = self.modules.iter().filter(|m| interface.is_none_or(|i| m.category == i)).map(|m| m.name.as_str());
+        Diagnostic::new(codes::UNKNOWN_MODULE, format!("there is no module `{name}`")).suggest(name, "modules", known)
+    }
+
+    /// A category's interface, scanned.
+    pub(crate) fn interface(&self, name: &str) -> Result<Arc<Interface>, Report> {
+        if let Some(done) = lock(&self.interfaces).get(name) {
+            return Ok(Arc::clone(done));
+        }
+        let Some(category) = self.categories.get(name) else {
+            let known = self.categories.keys().map(String::as_str);
+            let diagnostic = Diagnostic::new(codes::UNKNOWN_INTERFACE, format!("there is no category `{name}`"));
+            return Err(diagnostic.suggest(name, "categories", known).into());
+        };
+        let path = format!("{name}/interface.wgsl");
+        let file = match read(self.library.as_ref(), &path)? {
+            Some(text) => SourceFile::new(path, text),
+            None => {
+                return Err(Diagnostic::new(codes::MISSING_INTERFACE, format!("the category `{name}` has no `interface.wgsl`"))
+                    .at(&category.source, 0..0, "declared here")
+                    .into());
+            }
+        };
+        limits::check_wgsl(&file)?;
+        let scan = scan(&file.text);
+        let interface = Arc::new(Interface { category: Arc::clone(category), file, scan });
+        lock(&self.interfaces).insert(name.to_owned(), Arc::clone(&interface));
+        Ok(interface)
+    }
+
+    /// A category's interface, parsed with its neutral bodies.
+    pub(crate) fn interface_unit(&self, name: &str) -> Result<Arc<Unit>, Report> {
+        if let Some(done) = lock(&self.interface_units).get(name) {
+            return Ok(Arc::clone(done));
+        }
+        let interface = self.interface(name)?;
+        let needs = Needs { uses: interface.category.manifest.uses.clone(), ..Needs::default() };
+        let composed = compose(&interface.file, &interface.scan, &needs, &|n| self.interface(n))?;
+        let unit = parse_unit(Arc::clone(&interface.file), interface.scan.clone(), composed, needs, Some(name.to_owned()))?;
+        let unit = Arc::new(unit);
+        lock(&self.interface_units).insert(name.to_owned(), Arc::clone(&unit));
+        Ok(unit)
+    }
+
+    /// A module, parsed with these constants.
+    pub(crate) fn unit(&self, module: &Arc<Module>, constants: &IndexMap<String, (Value, Typed)>) -> Result<Arc<Unit>, Report> {
+        let values = constants.iter().map(|(n, (_, v))| (n.clone(), v.wgsl())).collect();
+        let key = (format!("{}/{}", module.category, module.name), values);
+        if let Some(done) = lock(&self.units).get(&key) {
+            return Ok(Arc::clone(done));
+        }
+        let path = format!("{0}/{1}/{1}.wgsl", module.category, module.name);
+        let file = match read(self.library.as_ref(), &path)? {
+            Some(text) => SourceFile::new(path, text),
+            None => {
+                return Err(Diagnostic::new(codes::MISSING_WGSL, format!("`{path}` is not there"))
+                    .at(&module.source, 0..0, "declared here")
+                    .note("a module's WGSL is called like its folder")
+                    .into());
+            }
+        };
+        let unit = Arc::new(self.parse_module(module, file, constants)?);
+        lock(&self.units).insert(key, Arc::clone(&unit));
+        Ok(unit)
+    }
+
+    /// Parses a module's text.
+    pub(crate) fn parse_module(
+        &self,
+        module: &Module,
+        file: Arc<SourceFile>,
+        constants: &IndexMap<String, (Value, Typed)>,
+    ) -> Result<Unit, Report> {
+        limits::check_wgsl(&file)?;
+        let scan = scan(&file.text);
+        let needs = needs(module, constants)?;
+        let composed = compose(&file, &scan, &needs, &|n| self.interface(n))?;
+        let unit = parse_unit(file, scan, composed, needs, None)?;
+        if !module.category.is_empty() {
+            check_interface(&unit, self.interface(&module.category)?.as_ref(), self.interface_unit(&module.category)?.as_ref())?;
+        }
+        Ok(unit)
+    }
+
+    /// Checks a module alone: its manifest's references and its WGSL with every parameter as declared.
+    ///
+    /// # Errors
+    /// Anything wrong that can be known without a recipe.
+    pub fn check_module(&self, name: &str) -> Result<(), Report> {
+        let module = self.module(name)?;
+        let mut constants = IndexMap::new();
+        for (name, param) in module.manifest.params.iter().filter(|(_, p)| p.mode == ParamMode::Constant) {
+            constants.insert(name.clone(), (param.default.clone(), default_of(module, name, param)?));
+        }
+        let unit = self.unit(module, &constants)?;
+        crate::resolve::check_resources(module, &unit)
+    }
+}
+
+fn needs(module: &Module, constants: &IndexMap<String, (Value, Typed)>) -> Result<Needs, Report> {
+    let manifest = &module.manifest;
+    let mut needs = Needs {
+        implements: Some(module.category.clone()).filter(|c| !c.is_empty()),
+        slots: manifest
+            .slots
             .iter()
-            .find(|m| m.name == name)
-            .ok_or_else(|| Report::from(crate::diagnostics::Diagnostic::new("SW0000", "not written yet")))
+            .map(|(name, slot)| SlotNeed { name: name.clone(), interface: slot.interface.clone(), prefix: slot.prefix.clone() })
+            .collect(),
+        uses: manifest.uses.clone(),
+        instances: manifest.instances.clone(),
+        ..Needs::default()
+    };
+    for (name, param) in &manifest.params {
+        if let Some((_, value)) = constants.get(name) {
+            needs.constants.insert(name.clone(), value.clone());
+            continue;
+        }
+        match param.mode {
+            ParamMode::Override => {
+                needs.overrides.insert(name.clone(), (param.clone(), default_of(module, name, param)?));
+            }
+            _ => {
+                needs.uniforms.insert(name.clone(), param.clone());
+            }
+        }
     }
+    Ok(needs)
+}
 
-    /// Links, validates and reflects one pass of a recipe: `main` for the root's own entry points,
-    /// `<instance>.<pass>` for a pass that a module of the tree declares.
-    ///
-    /// # Errors
-    /// Anything wrong with the recipe or with the modules it reaches.
-    pub fn compile(&self, recipe: &Recipe, pass: &str) -> Result<Program, Report> {
-        let _ = (recipe, pass);
-        Err(Report::from(crate::diagnostics::Diagnostic::new("SW0000", "not written yet")))
-    }
+fn default_of(module: &Module, name: &str, param: &Param) -> Result<Typed, Report> {
+    typed(param, &param.default).map_err(|error| {
+        let place = Place::new(&module.source).keys(&["params", name, "default"]);
+        error.diagnostic(name, &module.source, place.span()).into()
+    })
+}
 
-    /// Makes a compute program that calls one interface function of a recipe's root over a table: entry point `probe`,
-    /// workgroup size 64, group 3 binding 0 `array<ProbeInput>` (one member for each argument, named as in the interface),
-    /// binding 1 `array<ProbeOutput>` with the member `value`.
-    ///
-    /// # Errors
-    /// As for [`Catalog::compile`]; the root's interface has no such function.
-    pub fn compile_probe(&self, recipe: &Recipe, function: &str) -> Result<Program, Report> {
-        let _ = (recipe, function);
-        Err(Report::from(crate::diagnostics::Diagnostic::new("SW0000", "not written yet")))
+fn load_modules(library: &dyn Library, category: &str, found: &mut Vec<Diagnostic>) -> Result<Vec<Arc<Module>>, Report> {
+    let mut modules = Vec::new();
+    for name in sorted(library.folders(category)) {
+        let path = format!("{category}/{name}/module.ron");
+        let Some(text) = read(library, &path)? else {
+            found.push(
+                Diagnostic::new(codes::MISSING_MANIFEST, format!("the folder `{category}/{name}` has no `module.ron`"))
+                    .note("a folder in a category is a module"),
+            );
+            continue;
+        };
+        match parse_module(&path, &text) {
+            Ok(parsed) => modules.push(Arc::new(Module { name, category: category.to_owned(), manifest: parsed.value, source: parsed.file })),
+            Err(report) => found.extend(report.diagnostics),
+        }
     }
+    Ok(modules)
+}
+
+fn sorted(mut names: Vec<String>) -> Vec<String> {
+    names.sort();
+    names.dedup();
+    names
+}
+
+fn read(library: &dyn Library, path: &str) -> Result<Option<String>, Report> {
+    library.read(path).map_err(|why| Diagnostic::new(codes::UNREADABLE_FILE, format!("`{path}` cannot be read: {why}")).into())
+}
+
+/// A panic while the lock was held can only have left a cache entry out: the maps are never half changed.
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

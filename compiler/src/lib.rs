@@ -1,6 +1,10 @@
 //! Links WGSL modules declared in RON into one validated naga module.
 
 pub mod catalog;
+mod link;
+mod parse;
+mod plan;
+mod resolve;
 pub mod diagnostics;
 pub mod emit;
 pub mod library;

@@ -2,7 +2,8 @@
 struct Receiver {
     /// Layer of the map (of a cube map: the cube).
     layer: u32,
-    /// Where in the map: u and v in [0, 1], or a direction in world space for a cube map.
+    /// Where in the map: u and v in [0, 1] and the distance along the view's axis in m; for a cube map the
+    /// offset from the light to the receiver, world space, m.
     place: vec3f,
     /// Depth to compare with, in the map's own measure, bias taken off.
     depth: f32,

@@ -4,7 +4,8 @@ struct Fragment {
     position: vec3f,
     /// Unit length, world space, on the side of the viewer for double-sided objects.
     normal: vec3f,
-    /// Unit length, world space; w is the sign of the bitangent.
+    /// Direction of growing u in world space, of any length, zero where the mesh has none;
+    /// w is the sign of the bitangent, cross(normal, tangent) * w.
     tangent: vec4f,
     uv: vec2f,
 }

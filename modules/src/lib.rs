@@ -1,1 +1,36 @@
-//! x
+//! The standard library of shader modules, and the ways to have modules of one's own beside it.
+//!
+//! The modules are data: each is a folder `<category>/<name>/` of this crate with
+//!
+//! - `module.ron`: its declaration ([`shadewright_compiler::manifest::ModuleManifest`]),
+//! - `<name>.wgsl`: its code, plain WGSL,
+//! - `README.md`: formula, source, domain and limits,
+//! - `cases.ron`: inputs with the values that they must give ([`cases`]).
+//!
+//! The build script finds them by looking at the folders, so this crate has no list of modules.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use shadewright_modules::{Folder, Overlay, library};
+//!
+//! // Modules in ./shaders come first, the standard library fills in the rest.
+//! let mine = Overlay(vec![Arc::new(Folder::new("./shaders")), library()]);
+//! ```
+
+pub mod cases;
+mod embedded;
+mod folder;
+mod overlay;
+
+use std::sync::Arc;
+
+use shadewright_compiler::Library;
+
+pub use embedded::Embedded;
+pub use folder::Folder;
+pub use overlay::Overlay;
+
+/// The standard library.
+pub fn library() -> Arc<dyn Library> {
+    Arc::new(Embedded)
+}

@@ -8,22 +8,15 @@ use naga::{Constant, EntryPoint, Expression, GlobalVariable, Handle, Module, Ove
 use crate::parse::Origin;
 use crate::plan::{Body, GROUPS, Plan};
 
-/// A linked module that nobody has validated yet.
-#[derive(Debug)]
-pub struct Linked {
-    /// The IR.
-    pub module: Module,
-}
-
-/// Links a plan.
-pub fn link(plan: &Plan) -> Linked {
+/// Links a plan to a module that nobody has validated yet.
+pub fn link(plan: &Plan) -> Module {
     let mut linker = Linker::new(plan);
     for index in 0..plan.functions.len() {
         linker.function(index);
     }
     // Stages in a fixed order, whatever the order of the text.
     linker.out.entry_points.sort_by_key(|e| (stage_order(e.stage), e.name.clone()));
-    Linked { module: linker.out }
+    linker.out
 }
 
 fn stage_order(stage: naga::ShaderStage) -> u8 {
@@ -243,7 +236,7 @@ impl<'p> Linker<'p> {
             if let Some(member) = block.members.iter().position(|m| m.home == home && m.index == index) {
                 let handle = match self.blocks[number] {
                     Some(handle) => handle,
-                    None => self.block(number),
+                    None => self.uniform_block(number),
                 };
                 return Some((handle, member as u32));
             }
@@ -251,7 +244,7 @@ impl<'p> Linker<'p> {
         None
     }
 
-    fn block(&mut self, number: usize) -> Handle<GlobalVariable> {
+    fn uniform_block(&mut self, number: usize) -> Handle<GlobalVariable> {
         let plan = self.plan;
         let block = &plan.blocks[number];
         let mut members = Vec::with_capacity(block.members.len());

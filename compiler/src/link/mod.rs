@@ -2,9 +2,10 @@
 
 mod body;
 mod combine;
+mod edits;
 mod ir;
 mod source;
 mod types;
 
-pub use ir::{Linked, link};
+pub use ir::link;
 pub use source::write_source;

@@ -39,7 +39,7 @@ fn pass_group() -> u32 {
 }
 
 /// How a list slot's results become one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize)]
 pub enum Combine {
     /// Every module is called with the same arguments, the results are added.
     Sum,

@@ -1,6 +1,7 @@
 //! RON text to declarations: categories, modules, recipes.
 
 mod category;
+mod check;
 mod load;
 mod module;
 mod recipe;
@@ -9,6 +10,7 @@ mod temperature;
 mod value;
 
 pub use category::{CategoryManifest, Combine};
+pub use check::{GENERATED, LAST_GROUP, check_category, check_module, default_of, is_identifier};
 pub use load::{Parsed, parse, parse_category, parse_module, parse_recipe, ron_options};
 pub use module::{
     Among, Arity, Dispatch, Filling, ModuleManifest, Param, ParamMode, ParamType, PassDecl, Resource, ResourceKind, Rule, Slot, ViewKind,

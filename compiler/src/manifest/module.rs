@@ -213,6 +213,7 @@ pub enum ResourceKind {
 }
 
 /// A pass that a module needs.
+#[allow(clippy::large_enum_variant, reason = "a handful of them exist, in maps")]
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum PassDecl {

@@ -76,8 +76,7 @@ impl Locator {
     pub fn new(text: &str) -> Self {
         let mut values: Vec<Value> = Vec::new();
         let mut open = vec![Open::new(0, String::new())];
-        let mut scanner = Scanner { text, at: 0 };
-        while let Some((token, span)) = scanner.next() {
+        for (token, span) in (Scanner { text, at: 0 }) {
             let depth = open.len();
             // The text's own level is never closed, so there is always a last one.
             let Some(top) = open.last_mut() else { break };

@@ -130,6 +130,19 @@ pub fn wgsl_type(ty: ParamType) -> &'static str {
     }
 }
 
+/// WGSL name of a value's type.
+pub fn typed_wgsl(value: &Typed) -> &'static str {
+    match value {
+        Typed::F32(_) => "f32",
+        Typed::U32(_) => "u32",
+        Typed::I32(_) => "i32",
+        Typed::Bool(_) => "bool",
+        Typed::Vec2(_) => "vec2f",
+        Typed::Vec3(_) => "vec3f",
+        Typed::Vec4(_) => "vec4f",
+    }
+}
+
 /// The struct that holds parameters or instance fields.
 pub fn fields_struct(name: &str, fields: &IndexMap<String, Param>) -> String {
     let mut text = format!("struct {name} {{\n");
@@ -208,7 +221,7 @@ impl Composer<'_> {
     fn params(&mut self, needs: &Needs) -> Result<(), Report> {
         for (name, value) in &needs.constants {
             self.claim(&constant_name(name), Origin::Param(name.clone()), "a parameter's constant")?;
-            self.add(&format!("const {}: {} = {};\n", constant_name(name), value.wgsl_type(), value.wgsl()));
+            self.add(&format!("const {}: {} = {};\n", constant_name(name), typed_wgsl(value), value.wgsl()));
         }
         for (name, (param, default)) in &needs.overrides {
             self.claim(&constant_name(name), Origin::Param(name.clone()), "a parameter's override")?;

@@ -10,6 +10,7 @@ use super::checks;
 use super::compose::{Composed, Interface, Needs, Origin};
 use super::scan::Scan;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
+use crate::upstream::guarded;
 
 /// A struct across units: whose it is, and its name there.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -101,31 +102,17 @@ pub fn check_interface(unit: &Unit, interface: &Interface, interface_unit: &Unit
     checks::against_interface(unit, interface, interface_unit)
 }
 
-/// naga's parser and validator recurse with the text's nesting: this much is ample for the nesting limit.
-const STACK: usize = 64 << 20;
-
 fn parse_and_validate(file: &Arc<SourceFile>, composed: &Composed) -> Result<(naga::Module, naga::valid::ModuleInfo), Report> {
-    let outcome = std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || {
-            let mut frontend = naga::front::wgsl::Frontend::new();
-            let module = frontend.parse(&composed.text).map_err(|e| parse_error(file, composed, &e))?;
-            // Bindings are numbered when linking.
-            let flags = naga::valid::ValidationFlags::all() - naga::valid::ValidationFlags::BINDINGS;
-            let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::all());
-            let info = validator.validate(&module).map_err(|e| validation_error(file, composed, &e))?;
-            Ok((module, info))
-        });
-        match thread {
-            Ok(thread) => thread.join(),
-            Err(error) => Ok(Err(Diagnostic::new(codes::UPSTREAM_PANIC, format!("no thread to parse on: {error}")).into())),
-        }
-    });
-    outcome.unwrap_or_else(|_| {
-        Err(Diagnostic::new(codes::UPSTREAM_PANIC, "naga gave up on this text with an internal error")
-            .at(file, 0..0, "in this file")
-            .note("this is a defect of naga; a simpler spelling of the text may avoid it")
-            .into())
-    })
+    let work = || {
+        let mut frontend = naga::front::wgsl::Frontend::new();
+        let module = frontend.parse(&composed.text).map_err(|e| parse_error(file, composed, &e))?;
+        // Bindings are numbered when linking.
+        let flags = naga::valid::ValidationFlags::all() - naga::valid::ValidationFlags::BINDINGS;
+        let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::all());
+        let info = validator.validate(&module).map_err(|e| validation_error(file, composed, &e))?;
+        Ok((module, info))
+    };
+    guarded(codes::UPSTREAM_PANIC, "parsing a module", work).map_err(|d| d.at(file, 0..0, "in this file"))?
 }
 
 fn parse_error(file: &Arc<SourceFile>, composed: &Composed, error: &naga::front::wgsl::ParseError) -> Report {

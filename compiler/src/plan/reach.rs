@@ -138,7 +138,6 @@ impl Reach<'_> {
             Roots::Entry { instance, entry } => (*instance, Some(entry)),
         };
         let unit = Arc::clone(&self.homes[home].unit);
-        let node = &self.tree.nodes[self.instances.list[home].node];
         let mut found = false;
         for (index, entry) in unit.ir.entry_points.iter().enumerate() {
             // The root of a tree runs its stages; a module further in is only asked for one of its passes.
@@ -150,6 +149,7 @@ impl Reach<'_> {
         if found {
             return Ok(());
         }
+        let node = &self.tree.nodes[self.instances.list[home].node];
         let diagnostic = match wanted {
             None => Diagnostic::new(codes::NOT_A_ROOT, format!("`{}` has no entry points", node.module.name))
                 .at(&node.place.file, node.place.span(), "a pass is needed here")

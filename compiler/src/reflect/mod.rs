@@ -1,5 +1,9 @@
 //! What a host program must know to run a linked module.
 
+mod bindings;
+mod layout;
 mod types;
 
+pub use bindings::{binding_type, entry_point, stage, stages_using};
+pub use layout::{Layouts, wgsl_type_name};
 pub use types::*;

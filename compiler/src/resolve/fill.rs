@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
-use super::{Filled, Place, Tree, TreeNode, rules};
+use super::{Filled, Place, Tree, TreeNode, Way, rules};
 use crate::catalog::{Catalog, Module};
-use crate::diagnostics::{Diagnostic, Report, codes, nearest};
+use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::limits;
-use crate::manifest::spans::Step;
 use crate::manifest::{Arity, Filling, Node, ParamMode, Slot, Typed, Value, typed};
 use crate::program::Recipe;
 
@@ -17,7 +16,7 @@ use crate::program::Recipe;
 /// # Errors
 /// A name, slot, parameter or rule is wrong; the tree is too deep or too large.
 pub fn resolve(catalog: &Catalog, recipe: &Recipe) -> Result<Tree, Report> {
-    let place = Place { file: Arc::clone(&recipe.source), path: Vec::new() };
+    let place = Place::new(&recipe.source);
     let module = catalog.module_at(&recipe.root.module, None, &place)?;
     resolve_root(catalog, module, &recipe.root, place)
 }
@@ -62,7 +61,7 @@ impl Resolver<'_> {
         if let Some(label) = &node.label {
             if !is_identifier(label) {
                 return Err(Diagnostic::new(codes::BAD_LABEL, format!("the label `{label}` is no identifier"))
-                    .at(&place.file, place.then(&[Step::Key("label".into())]).span(), "letters, digits and underscores, not a digit first")
+                    .at(&place.file, place.keys(&["label"]).span(), "letters, digits and underscores, not a digit first")
                     .into());
             }
         }
@@ -88,14 +87,11 @@ impl Resolver<'_> {
         for name in node.fill.keys() {
             if !module.manifest.slots.contains_key(name) {
                 let known: Vec<&str> = module.manifest.slots.keys().map(String::as_str).collect();
-                let span = place.then(&[Step::Key("fill".into()), Step::Key(name.clone())]).key_span();
-                let mut diagnostic = Diagnostic::new(codes::UNKNOWN_SLOT, format!("`{}` has no slot `{name}`", module.name))
-                    .at(&place.file, span, "no such slot");
-                if let Some(near) = nearest(name, known.iter().copied()) {
-                    diagnostic = diagnostic.note(format!("did you mean `{near}`?"));
-                }
-                let list = if known.is_empty() { "it has none".to_owned() } else { format!("it has: {}", known.join(", ")) };
-                return Err(diagnostic.note(list).into());
+                let span = place.keys(&["fill", name]).key_span();
+                return Err(Diagnostic::new(codes::UNKNOWN_SLOT, format!("`{}` has no slot `{name}`", module.name))
+                    .at(&place.file, span, "no such slot")
+                    .suggest(name, "slots", known)
+                    .into());
             }
         }
         Ok(())
@@ -114,9 +110,9 @@ impl Resolver<'_> {
     ) -> Result<Vec<usize>, Report> {
         let by_recipe = node.fill.get(name);
         let (filling, at) = match (by_recipe, &slot.default) {
-            (Some(filling), _) => (filling.clone(), place.then(&[Step::Key("fill".into()), Step::Key(name.clone())])),
+            (Some(filling), _) => (filling.clone(), place.keys(&["fill", name])),
             (None, Some(default)) => {
-                let at = Place { file: Arc::clone(&module.source), path: vec![Step::Key("slots".into()), Step::Key(name.clone()), Step::Key("default".into())] };
+                let at = Place::new(&module.source).keys(&["slots", name, "default"]);
                 if let Some(first) = self.defaults.iter().position(|m| *m == module.name) {
                     let mut circle = self.defaults[first..].to_vec();
                     circle.push(module.name.clone());
@@ -158,7 +154,7 @@ impl Resolver<'_> {
         }
         let mut filled = Vec::with_capacity(nodes.len());
         for (index, child) in nodes.iter().enumerate() {
-            let at = if many { at.then(&[Step::Index(index)]) } else { at.clone() };
+            let at = if many { at.then(Way::Index(index)) } else { at.clone() };
             let path = if slot.arity == Arity::List { format!("{path}.{name}[{index}]") } else { format!("{path}.{name}") };
             let module = self.catalog.module_at(&child.module, Some((&slot.interface, name)), &at)?;
             filled.push(self.node(module, child, Some(owner), path, at, depth + 1)?);
@@ -179,32 +175,29 @@ fn constants(module: &Module, node: &Node, place: &Place) -> Result<IndexMap<Str
     let manifest = &module.manifest;
     for name in node.freeze.keys() {
         if !manifest.params.contains_key(name) {
-            let at = place.then(&[Step::Key("freeze".into()), Step::Key(name.clone())]);
+            let at = place.keys(&["freeze", name]);
             if manifest.instances.contains_key(name) {
                 return Err(Diagnostic::new(codes::INSTANCE_FIELD_FROZEN, format!("`{name}` differs from instance to instance"))
                     .at(&at.file, at.key_span(), "a recipe cannot freeze it")
                     .into());
             }
-            let mut diagnostic =
-                Diagnostic::new(codes::UNKNOWN_PARAM, format!("`{}` has no parameter `{name}`", module.name)).at(&at.file, at.key_span(), "no such parameter");
-            if let Some(near) = nearest(name, manifest.params.keys().map(String::as_str)) {
-                diagnostic = diagnostic.note(format!("did you mean `{near}`?"));
-            }
-            let known: Vec<String> = manifest.params.keys().cloned().collect();
-            return Err(diagnostic.note(format!("its parameters: {}", list_or_none(&known))).into());
+            return Err(Diagnostic::new(codes::UNKNOWN_PARAM, format!("`{}` has no parameter `{name}`", module.name))
+                .at(&at.file, at.key_span(), "no such parameter")
+                .suggest(name, "parameters", manifest.params.keys().map(String::as_str))
+                .into());
         }
     }
     let mut constants = IndexMap::new();
     for (name, param) in &manifest.params {
         let (value, at) = match node.freeze.get(name) {
-            Some(value) => (value, place.then(&[Step::Key("freeze".into()), Step::Key(name.clone())])),
+            Some(value) => (value, place.keys(&["freeze", name])),
             None if param.mode == ParamMode::Constant => (
                 &param.default,
-                Place { file: Arc::clone(&module.source), path: vec![Step::Key("params".into()), Step::Key(name.clone()), Step::Key("default".into())] },
+                Place::new(&module.source).keys(&["params", name, "default"]),
             ),
             None => continue,
         };
-        let typed = typed(param, value).map_err(|error| error.at(name, &at.file, at.span()))?;
+        let typed = typed(param, value).map_err(|error| Report::from(error.diagnostic(name, &at.file, at.span())))?;
         constants.insert(name.clone(), (value.clone(), typed));
     }
     Ok(constants)

@@ -2,6 +2,7 @@
 
 mod fill;
 mod instances;
+mod resources;
 mod rules;
 
 use std::ops::Range;
@@ -11,11 +12,20 @@ use indexmap::IndexMap;
 
 use crate::catalog::Module;
 use crate::diagnostics::SourceFile;
-use crate::manifest::spans::{Locator, Step};
-use crate::manifest::{Arity, Typed, Value};
+use crate::manifest::{Arity, Locator, Step, Typed, Value};
 
-pub use fill::resolve;
+pub use fill::{resolve, resolve_root};
 pub use instances::{Instance, Instances};
+pub use resources::check_resources;
+
+/// A step into a RON text, owned.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// Into a field, or a map's value.
+    Key(String),
+    /// Into a list or tuple.
+    Index(usize),
+}
 
 /// A place in a RON text: where a node was named.
 #[derive(Clone, Debug)]
@@ -23,40 +33,55 @@ pub struct Place {
     /// The text.
     pub file: Arc<SourceFile>,
     /// The way to the node in it.
-    pub path: Vec<Step>,
+    pub path: Vec<Way>,
 }
 
 impl Place {
+    /// The whole of a text.
+    pub fn new(file: &Arc<SourceFile>) -> Self {
+        Self { file: Arc::clone(file), path: Vec::new() }
+    }
+
     /// The same text, further in.
-    pub fn then(&self, steps: &[Step]) -> Self {
+    #[must_use]
+    pub fn then(&self, step: Way) -> Self {
         let mut path = self.path.clone();
-        path.extend_from_slice(steps);
+        path.push(step);
         Self { file: Arc::clone(&self.file), path }
+    }
+
+    /// The same text, further in by keys.
+    #[must_use]
+    pub fn keys(&self, keys: &[&str]) -> Self {
+        keys.iter().fold(self.clone(), |place, key| place.then(Way::Key((*key).to_owned())))
+    }
+
+    fn steps(&self) -> Vec<Step<'_>> {
+        let step = |way| match way {
+            &Way::Index(index) => Step::Index(index),
+            Way::Key(key) => Step::Key(key),
+        };
+        self.path.iter().map(step).collect()
     }
 
     /// Bytes of the value, or of the nearest thing around it that can be found.
     pub fn span(&self) -> Range<usize> {
-        let locator = Locator::new(&self.file.text);
-        for length in (0..=self.path.len()).rev() {
-            if let Some(span) = locator.find(&self.path[..length]) {
-                return span;
-            }
-        }
-        0..self.file.text.len()
+        Locator::new(&self.file.text).find_near(&self.steps())
     }
 
     /// Bytes of the last step's key, or of the value.
     pub fn key_span(&self) -> Range<usize> {
-        Locator::new(&self.file.text).find_key(&self.path).unwrap_or_else(|| self.span())
+        Locator::new(&self.file.text).find_key(&self.steps()).unwrap_or_else(|| self.span())
+    }
+
+    /// Bytes of a node's module name.
+    pub fn name_span(&self) -> Range<usize> {
+        self.keys(&["module"]).span()
     }
 
     /// `file:line:column` for people.
     pub fn text(&self) -> String {
-        let start = self.span().start;
-        let before = &self.file.text.as_bytes()[..start.min(self.file.text.len())];
-        let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
-        let column = before.iter().rev().take_while(|&&b| b != b'\n').count() + 1;
-        format!("{}:{line}:{column}", self.file.name)
+        self.file.place(self.name_span().start)
     }
 }
 

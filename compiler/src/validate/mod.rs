@@ -14,6 +14,7 @@ pub struct Validated {
 ///
 /// # Errors
 /// naga's validator refuses the module. The spans are those of the module's own expressions.
+#[allow(clippy::result_large_err, reason = "it is returned once a link, and only when that fails")]
 pub fn validate(module: naga::Module) -> Result<Validated, WithSpan<ValidationError>> {
     let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module)?;
     Ok(Validated { module, info })

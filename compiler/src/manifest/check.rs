@@ -1,0 +1,521 @@
+//! What a manifest can say wrong all by itself, without its WGSL and without the rest of the library.
+
+use std::collections::HashMap;
+
+use indexmap::IndexMap;
+use naga::valid::Capabilities;
+
+use super::Step::{self, Index, Key};
+use super::{
+    CategoryManifest, ModuleManifest, Param, ParamMode, ParamType, Parsed, PassDecl, Resource, ResourceKind, Typed, ValueError, typed,
+};
+use crate::diagnostics::{Diagnostic, Report, codes};
+
+/// Highest bind group: 0 frame, 1 lights and shadows, 2 material, 3 pass.
+pub const LAST_GROUP: u32 = 3;
+
+/// Names that the linker gives to what it generates in a module's scope.
+pub const GENERATED: [&str; 2] = ["params", "instances"];
+
+/// Checks a category's declaration.
+///
+/// # Errors
+/// All that is wrong, each at its place.
+pub fn check_category(parsed: &Parsed<CategoryManifest>) -> Result<(), Report> {
+    let mut found = Vec::new();
+    group(parsed, &[Key("group")], parsed.value.group, &mut found);
+    resources(parsed, &parsed.value.resources, &IndexMap::new(), &mut found);
+    Report::unless_empty(found)
+}
+
+/// Checks a module's declaration: names, parameters with their ranges and defaults, passes and the resources made from them.
+///
+/// # Errors
+/// All that is wrong, each at its place.
+pub fn check_module(parsed: &Parsed<ModuleManifest>) -> Result<(), Report> {
+    let module = &parsed.value;
+    let mut found = Vec::new();
+    for (table, fields) in [("params", &module.params), ("instances", &module.instances)] {
+        for (name, declared) in fields {
+            identifier(parsed, &[Key(table), Key(name)], name, &mut found);
+            param(parsed, [Key(table), Key(name)], declared, &mut found);
+            // Fields of instances are always in a buffer, whatever their mode.
+            if table == "params" {
+                mode(parsed, [Key(table), Key(name)], declared, &mut found);
+            } else if declared.ty == ParamType::Bool {
+                let path = [Key(table), Key(name), Key("type")];
+                found.push(
+                    parsed
+                        .error_at(
+                            &path,
+                            codes::BAD_MODE,
+                            format!("`{name}` cannot be in a buffer"),
+                            "WGSL has no `bool` there",
+                        )
+                        .note("make it a `U32`"),
+                );
+            }
+        }
+    }
+    slots(parsed, &mut found);
+    resources(parsed, &module.resources, &module.passes, &mut found);
+    passes(parsed, &mut found);
+    for (index, name) in module.capabilities.iter().enumerate() {
+        if Capabilities::from_name(name).is_none() {
+            let known = Capabilities::all().iter_names().map(|(name, _)| name);
+            found.push(
+                parsed
+                    .error_at(
+                        &[Key("capabilities"), Index(index)],
+                        codes::UNKNOWN_CAPABILITY,
+                        format!("there is no capability `{name}`"),
+                        "unknown",
+                    )
+                    .suggest(name, "capabilities", known),
+            );
+        }
+    }
+    Report::unless_empty(found)
+}
+
+/// Whether WGSL takes a name as an identifier and it stays readable in the other languages: ASCII letters, digits and
+/// underscores, no digit first, no two underscores first, and no word that WGSL reserves.
+pub fn is_identifier(name: &str) -> bool {
+    let first = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+    let rest = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+    first && rest && name != "_" && !name.starts_with("__") && !naga::keywords::wgsl::RESERVED.contains(&name)
+}
+
+/// Checks the name at the path's last key.
+fn identifier<T>(parsed: &Parsed<T>, path: &[Step], name: &str, found: &mut Vec<Diagnostic>) {
+    if is_identifier(name) {
+        return;
+    }
+    let span = parsed.places.find_key(path).unwrap_or_else(|| parsed.places.find_near(path));
+    let reserved = naga::keywords::wgsl::RESERVED.contains(&name);
+    let label = if reserved {
+        "a word that WGSL reserves"
+    } else {
+        "no WGSL identifier"
+    };
+    found.push(
+        Diagnostic::new(codes::BAD_NAME, format!("`{name}` cannot be a name here"))
+            .at(&parsed.file, span, label)
+            .note("ASCII letters, digits and underscores, not a digit or two underscores first"),
+    );
+}
+
+fn param<T>(parsed: &Parsed<T>, [table, name]: [Step; 2], declared: &Param, found: &mut Vec<Diagnostic>) {
+    let Key(shown) = name else { return };
+    if let Some((lo, hi)) = declared.range
+        && !(lo < hi && lo.is_finite() && hi.is_finite())
+    {
+        let message = format!("the range of `{shown}` is empty");
+        found.push(parsed.error_at(
+            &[table, name, Key("range")],
+            codes::BAD_RANGE,
+            message,
+            "the first number must be below the second",
+        ));
+        return;
+    }
+    for (unit, factor) in &declared.also {
+        if !(factor.is_finite() && *factor > 0.0) || *unit == declared.unit {
+            let label = if *unit == declared.unit {
+                "this is the parameter's own unit"
+            } else {
+                "not a positive finite factor"
+            };
+            let message = format!("`{shown}` cannot be written in `{unit}`");
+            found.push(parsed.error_at(&[table, name, Key("also"), Key(unit)], codes::BAD_UNIT, message, label));
+            return;
+        }
+    }
+    if let Err(error) = typed(declared, &declared.default) {
+        let span = parsed.places.find_near(&[table, name, Key("default")]);
+        let message = format!("the default of `{shown}` does not fit");
+        found.push(error.diagnostic_as(codes::BAD_DEFAULT, message, &parsed.file, span));
+    }
+}
+
+fn mode<T>(parsed: &Parsed<T>, [table, name]: [Step; 2], declared: &Param, found: &mut Vec<Diagnostic>) {
+    let Key(shown) = name else { return };
+    let scalar = matches!(declared.ty, ParamType::F32 | ParamType::U32 | ParamType::I32 | ParamType::Bool);
+    let (label, note) = match (declared.mode, declared.ty) {
+        (ParamMode::Uniform, ParamType::Bool) => ("WGSL has no `bool` in uniform buffers", "add `mode: Override` or `mode: Constant`"),
+        (ParamMode::Override, _) if !scalar => ("only scalars can be `Override`", "use `mode: Uniform` or `mode: Constant`"),
+        _ => return,
+    };
+    let place = if declared.mode == ParamMode::Uniform { "type" } else { "mode" };
+    let path = [table, name, Key(place)];
+    found.push(
+        parsed
+            .error_at(&path, codes::BAD_MODE, format!("`{shown}` cannot reach the shader so"), label)
+            .note(note),
+    );
+}
+
+fn slots(parsed: &Parsed<ModuleManifest>, found: &mut Vec<Diagnostic>) {
+    let mut callers: HashMap<(&str, &str), &str> = HashMap::new();
+    for (name, slot) in &parsed.value.slots {
+        identifier(parsed, &[Key("slots"), Key(name)], name, found);
+        if !slot.prefix.is_empty() && !is_identifier(&slot.prefix) {
+            found.push(
+                parsed
+                    .error_at(
+                        &[Key("slots"), Key(name), Key("prefix")],
+                        codes::BAD_NAME,
+                        format!("`{}` cannot begin a name", slot.prefix),
+                        "no WGSL identifier",
+                    )
+                    .note("ASCII letters, digits and underscores, not a digit or two underscores first"),
+            );
+        }
+        if let Some(other) = callers.insert((&slot.interface, &slot.prefix), name) {
+            let at = |slot| parsed.places.find_key(&[Key("slots"), Key(slot)]).unwrap_or_default();
+            found.push(
+                Diagnostic::new(
+                    codes::NAME_CLASH,
+                    format!("calls to the slots `{other}` and `{name}` look the same"),
+                )
+                .at(&parsed.file, at(name), format!("functions of `{}`", slot.interface))
+                .at(&parsed.file, at(other), "and here")
+                .note("give one of them a `prefix`"),
+            );
+        }
+    }
+}
+
+fn group<T>(parsed: &Parsed<T>, path: &[Step], number: u32, found: &mut Vec<Diagnostic>) {
+    if number > LAST_GROUP {
+        found.push(
+            parsed
+                .error_at(path, codes::BAD_GROUP, format!("there is no bind group {number}"), "too large")
+                .note("groups: 0 frame, 1 lights and shadows, 2 material, 3 pass"),
+        );
+    }
+}
+
+fn resources<T>(
+    parsed: &Parsed<T>,
+    resources: &IndexMap<String, Resource>,
+    passes: &IndexMap<String, PassDecl>,
+    found: &mut Vec<Diagnostic>,
+) {
+    for (name, resource) in resources {
+        let path = [Key("resources"), Key(name)];
+        identifier(parsed, &path, name, found);
+        if GENERATED.contains(&name.as_str()) {
+            let span = parsed.places.find_key(&path).unwrap_or_default();
+            found.push(
+                Diagnostic::new(codes::NAME_CLASH, format!("a resource cannot be called `{name}`"))
+                    .at(&parsed.file, span, "the linker declares this name")
+                    .note("choose another name"),
+            );
+        }
+        if let Some(number) = resource.group {
+            group(parsed, &[path[0], path[1], Key("group")], number, found);
+        }
+        if let ResourceKind::Depth { pass } | ResourceKind::Views { pass } = &resource.kind
+            && !matches!(passes.get(pass), Some(PassDecl::Draw { .. }))
+        {
+            let draws = passes
+                .iter()
+                .filter(|(_, pass)| matches!(pass, PassDecl::Draw { .. }))
+                .map(|(name, _)| name.as_str());
+            let label = if passes.contains_key(pass) {
+                "draws nothing"
+            } else {
+                "not declared"
+            };
+            found.push(
+                parsed
+                    .error_at(
+                        &[path[0], path[1], Key("kind"), Key("pass")],
+                        codes::UNKNOWN_PASS,
+                        format!("there is no `Draw` pass `{pass}`"),
+                        label,
+                    )
+                    .suggest(pass, "passes that draw", draws),
+            );
+        }
+    }
+}
+
+fn passes(parsed: &Parsed<ModuleManifest>, found: &mut Vec<Diagnostic>) {
+    let params = &parsed.value.params;
+    for (name, pass) in &parsed.value.passes {
+        let path = [Key("passes"), Key(name)];
+        identifier(parsed, &path, name, found);
+        match pass {
+            PassDecl::Draw { resolution, .. } => {
+                if params.get(resolution).is_none_or(|param| param.ty != ParamType::U32) {
+                    let wide = params
+                        .iter()
+                        .filter(|(_, param)| param.ty == ParamType::U32)
+                        .map(|(name, _)| name.as_str());
+                    let label = if params.contains_key(resolution) {
+                        "not a `U32`"
+                    } else {
+                        "not declared"
+                    };
+                    found.push(
+                        parsed
+                            .error_at(
+                                &[path[0], path[1], Key("resolution")],
+                                codes::BAD_RESOLUTION,
+                                format!("the pass `{name}` needs a `U32` parameter for its resolution"),
+                                label,
+                            )
+                            .suggest(resolution, "`U32` parameters", wide),
+                    );
+                }
+            }
+            PassDecl::Compute { entry, .. } => {
+                if !is_identifier(entry) {
+                    found.push(parsed.error_at(
+                        &[path[0], path[1], Key("entry")],
+                        codes::BAD_NAME,
+                        format!("`{entry}` cannot be an entry point"),
+                        "no WGSL identifier",
+                    ));
+                }
+            }
+        }
+    }
+}
+
+/// The constant that a parameter has where nothing is said.
+///
+/// # Errors
+/// The manifest was not checked, and the default does not fit.
+pub fn default_of(param: &Param) -> Result<Typed, ValueError> {
+    typed(param, &param.default)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::manifest::{parse_category, parse_module};
+
+    fn module(inner: &str) -> String {
+        let parsed = parse_module("module.ron", &format!("(summary: \"s\",\n{inner})")).unwrap_or_else(|report| panic!("{report}"));
+        check_module(&parsed).map_or_else(|report| report.render(), |()| String::new())
+    }
+
+    /// Catches a check that refuses what is right.
+    #[test]
+    fn nothing_wrong() {
+        let text = r#"
+            slots: {"ndf": (interface: "ndf"), "base": (interface: "brdf"), "coat": (interface: "brdf", prefix: "coat_")},
+            params: {
+                "alpha": (type: F32, default: 0.5, range: (0, 1)), "n": (type: U32, default: 3, mode: Override),
+                "on": (type: Bool, default: true, mode: Constant), "tint": (type: Color, default: "2700 K"),
+                "flux": (type: F32, unit: "lm", also: {"klm": 1000}, default: "1 klm"), "size": (type: U32, default: 512),
+            },
+            instances: {"position": (type: Vec3, unit: "m", default: (0, 0, 0))},
+            resources: {"depth": (kind: Depth(pass: "shadow")), "views": (kind: Views(pass: "shadow"), group: 1)},
+            capabilities: ["SHADER_FLOAT16"],
+            passes: {"shadow": Draw(root: "depth", view: Cube, resolution: "size"), "sum": Compute(entry: "reduce", over: Frame)}"#;
+        assert_eq!(module(text), "");
+    }
+
+    /// Catches names that WGSL would refuse only after linking, far from here.
+    #[test]
+    fn names() {
+        let expected = "\
+error[SW0106]: `loop` cannot be a name here
+  --> module.ron:2:10
+  |
+2 | params: {\"loop\": (type: F32, default: 1)})
+  |          ^^^^^^ a word that WGSL reserves
+  |
+  = ASCII letters, digits and underscores, not a digit or two underscores first
+";
+        assert_eq!(module("params: {\"loop\": (type: F32, default: 1)}"), expected);
+        for inner in [
+            "params: {\"a-b\": (type: F32, default: 1)}",
+            "instances: {\"1a\": (type: F32, default: 1)}",
+            "slots: {\"_\": (interface: \"a\")}",
+            "slots: {\"a\": (interface: \"a\", prefix: \"coat-\")}",
+            "resources: {\"__a\": (kind: Texture())}",
+            "passes: {\"é\": Compute(entry: \"a\", over: Once)}",
+            "passes: {\"p\": Compute(entry: \"\", over: Once)}",
+        ] {
+            assert!(module(inner).starts_with("error[SW0106]"), "{inner}");
+        }
+    }
+
+    /// Catches a default that no recipe could write.
+    #[test]
+    fn defaults() {
+        let expected = "\
+error[SW0107]: the default of `alpha` does not fit
+  --> module.ron:2:40
+  |
+2 | params: {\"alpha\": (type: F32, default: 2, range: (0, 1))})
+  |                                        ^ 2 is outside 0 to 1
+";
+        assert_eq!(module("params: {\"alpha\": (type: F32, default: 2, range: (0, 1))}"), expected);
+        for inner in [
+            "params: {\"a\": (type: Vec3, default: (0, 0))}",
+            "params: {\"a\": (type: U32, default: 0.5)}",
+            "params: {\"a\": (type: F32, default: inf)}",
+            "instances: {\"a\": (type: F32, unit: \"m\", default: \"1 ft\")}",
+        ] {
+            assert!(module(inner).starts_with("error[SW0107]"), "{inner}");
+        }
+    }
+
+    /// Catches a range that nothing can be in.
+    #[test]
+    fn ranges() {
+        let expected = "\
+error[SW0108]: the range of `a` is empty
+  --> module.ron:2:46
+  |
+2 | params: {\"a\": (type: F32, default: 1, range: (1, 1))})
+  |                                              ^^^^^^ the first number must be below the second
+";
+        assert_eq!(module("params: {\"a\": (type: F32, default: 1, range: (1, 1))}"), expected);
+        assert!(module("params: {\"a\": (type: F32, default: 1, range: (NaN, 1))}").starts_with("error[SW0108]"));
+        assert!(module("params: {\"a\": (type: F32, default: 1, range: (0, inf))}").starts_with("error[SW0108]"));
+    }
+
+    /// Catches parameters that have no place in a uniform buffer or among pipeline constants.
+    #[test]
+    fn modes() {
+        let expected = "\
+error[SW0109]: `a` cannot reach the shader so
+  --> module.ron:2:22
+  |
+2 | params: {\"a\": (type: Bool, default: true)})
+  |                      ^^^^ WGSL has no `bool` in uniform buffers
+  |
+  = add `mode: Override` or `mode: Constant`
+";
+        assert_eq!(module("params: {\"a\": (type: Bool, default: true)}"), expected);
+        for inner in [
+            "params: {\"a\": (type: Color, default: (1, 1, 1), mode: Override)}",
+            "instances: {\"a\": (type: Bool, default: true)}",
+        ] {
+            assert!(module(inner).starts_with("error[SW0109]"), "{inner}");
+        }
+    }
+
+    /// Catches a shadow map of a pass that is not there, or is a compute pass.
+    #[test]
+    fn passes_of_resources() {
+        let expected = "\
+error[SW0110]: there is no `Draw` pass `shdow`
+  --> module.ron:2:39
+  |
+2 | resources: {\"map\": (kind: Depth(pass: \"shdow\"))},
+  |                                       ^^^^^^^ not declared
+  |
+  = did you mean `shadow`?
+  = passes that draw: shadow
+";
+        let pass =
+            "params: {\"size\": (type: U32, default: 512)},\npasses: {\"shadow\": Draw(root: \"d\", view: Cube, resolution: \"size\")}";
+        assert_eq!(
+            module(&format!("resources: {{\"map\": (kind: Depth(pass: \"shdow\"))}},\n{pass}")),
+            expected
+        );
+        let text = module("resources: {\"v\": (kind: Views(pass: \"p\"))}, passes: {\"p\": Compute(entry: \"a\", over: Once)}");
+        assert!(text.starts_with("error[SW0110]") && text.contains("draws nothing"), "{text}");
+    }
+
+    /// Catches a pass without a size.
+    #[test]
+    fn resolution() {
+        let expected = "\
+error[SW0111]: the pass `p` needs a `U32` parameter for its resolution
+  --> module.ron:3:55
+  |
+3 | passes: {\"p\": Draw(root: \"d\", view: Cube, resolution: \"size\")})
+  |                                                       ^^^^^^ not a `U32`
+";
+        let text = "params: {\"size\": (type: F32, default: 512)},\npasses: {\"p\": Draw(root: \"d\", view: Cube, resolution: \"size\")}";
+        assert_eq!(module(text), expected);
+        assert!(module("passes: {\"p\": Draw(root: \"d\", view: Cube, resolution: \"size\")}").contains("not declared"));
+    }
+
+    /// Catches two slots whose calls cannot be told apart, and a resource that hides what the linker generates.
+    #[test]
+    fn clashes() {
+        let expected = "\
+error[SW0112]: calls to the slots `a` and `b` look the same
+  --> module.ron:2:35
+  |
+2 | slots: {\"a\": (interface: \"brdf\"), \"b\": (interface: \"brdf\")})
+  |         ---                       ^^^ functions of `brdf`
+  |         |                          
+  |         and here
+  |
+  = give one of them a `prefix`
+";
+        assert_eq!(
+            module("slots: {\"a\": (interface: \"brdf\"), \"b\": (interface: \"brdf\")}"),
+            expected
+        );
+        assert!(module("resources: {\"params\": (kind: Texture())}").starts_with("error[SW0112]"));
+    }
+
+    /// Catches conversions that give nothing, or the wrong sign.
+    #[test]
+    fn units() {
+        let expected = "\
+error[SW0113]: `a` cannot be written in `cm`
+  --> module.ron:2:51
+  |
+2 | params: {\"a\": (type: F32, unit: \"m\", also: {\"cm\": 0}, default: 1)})
+  |                                                   ^ not a positive finite factor
+";
+        assert_eq!(
+            module("params: {\"a\": (type: F32, unit: \"m\", also: {\"cm\": 0}, default: 1)}"),
+            expected
+        );
+        assert!(module("params: {\"a\": (type: F32, unit: \"m\", also: {\"m\": 2}, default: 1)}").contains("own unit"));
+    }
+
+    /// Catches a capability that no device could ever be asked for.
+    #[test]
+    fn capabilities() {
+        let text = module("capabilities: [\"SHADER_FLOT16\"]");
+        let expected = "\
+error[SW0114]: there is no capability `SHADER_FLOT16`
+  --> module.ron:2:16
+  |
+2 | capabilities: [\"SHADER_FLOT16\"])
+  |                ^^^^^^^^^^^^^^^ unknown
+  |
+  = did you mean `SHADER_FLOAT16`?
+  = capabilities: ";
+        assert!(text.starts_with(expected), "{text}");
+    }
+
+    /// Catches a bind group that no device has room for.
+    #[test]
+    fn groups() {
+        let parsed = parse_category("category.ron", "(summary: \"s\", order: 1, group: 4)").unwrap();
+        let expected = "\
+error[SW0116]: there is no bind group 4
+  --> category.ron:1:33
+  |
+1 | (summary: \"s\", order: 1, group: 4)
+  |                                 ^ too large
+  |
+  = groups: 0 frame, 1 lights and shadows, 2 material, 3 pass
+";
+        assert_eq!(check_category(&parsed).unwrap_err().render(), expected);
+        assert!(module("resources: {\"a\": (kind: Texture(), group: 4)}").starts_with("error[SW0116]"));
+    }
+
+    /// Catches a check that stops at the first error.
+    #[test]
+    fn all_errors_are_told() {
+        let text = module("params: {\"a-b\": (type: F32, default: true), \"c\": (type: Bool, default: 1)}");
+        assert_eq!(text.matches("error[SW").count(), 4, "{text}");
+    }
+}

@@ -1,0 +1,58 @@
+//! Finds the modules: every folder beside this file that has a `category.ron` is a category, every folder in it with a
+//! `module.ron` is a module. Their files become a table in the program, so that adding a module is adding a folder.
+
+// Cargo reads a build script's standard output.
+#![allow(clippy::print_stdout)]
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
+    let mut files = Vec::new();
+    for category in folders_with(&root, "category.ron")? {
+        collect(&root, &category, &mut files)?;
+        for module in folders_with(&category, "module.ron")? {
+            collect(&root, &module, &mut files)?;
+        }
+    }
+    files.sort();
+
+    let mut table = String::from("&[\n");
+    for (name, path) in &files {
+        writeln!(table, "    ({name:?}, include_str!({:?})),", path.display().to_string())?;
+    }
+    table.push(']');
+    fs::write(PathBuf::from(env::var("OUT_DIR")?).join("files.rs"), table)?;
+
+    // A folder is watched with all that is in it, so new and removed modules are noticed as well.
+    println!("cargo::rerun-if-changed={}", root.display());
+    Ok(())
+}
+
+/// Folders directly in `folder` that hold the file `marker`.
+fn folders_with(folder: &Path, marker: &str) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.join(marker).is_file() {
+            found.push(path);
+        }
+    }
+    Ok(found)
+}
+
+/// Adds the text files directly in `folder`, named relative to `root` with `/`.
+fn collect(root: &Path, folder: &Path, files: &mut Vec<(String, PathBuf)>) -> Result<(), Box<dyn Error>> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let text = path.extension().is_some_and(|e| e == "ron" || e == "wgsl" || e == "md");
+        if path.is_file() && text {
+            let parts: Vec<_> = path.strip_prefix(root)?.components().map(|c| c.as_os_str().to_string_lossy().into_owned()).collect();
+            files.push((parts.join("/"), path));
+        }
+    }
+    Ok(())
+}
