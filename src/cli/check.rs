@@ -11,7 +11,7 @@ use shadewright::compiler::{Module, Recipe};
 
 use super::failure::Failure;
 use super::output::{say, say_json};
-use super::{Context, Format, input, interface};
+use super::{Context, Format, input};
 
 /// Options of `check`.
 #[derive(Args)]
@@ -166,7 +166,7 @@ fn cases(context: &Context, module: &str) -> Result<(), Failure> {
 /// Compiles all that a tree can be asked for: the root's entry points, or each function of its interface, and every pass.
 fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     let root = context.catalog.module(&recipe.root.module)?;
-    let functions = interface::functions(context.library.as_ref(), &context.catalog, &root.category)?;
+    let functions = context.catalog.functions(&root.category)?;
     let mut passes = BTreeSet::new();
     let mut note = |program: &shadewright::compiler::Program| {
         let declared = program.reflection().passes.iter();
@@ -175,8 +175,8 @@ fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     if functions.is_empty() {
         note(&context.catalog.compile(recipe, super::tree::ROOT)?);
     }
-    for function in &functions {
-        note(&context.catalog.compile_probe(recipe, &function.name)?);
+    for function in functions.keys() {
+        note(&context.catalog.compile_probe(recipe, function)?);
     }
     for pass in &passes {
         context.catalog.compile(recipe, pass)?;
@@ -190,10 +190,10 @@ fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
 /// That.
 pub fn links(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     let root = context.catalog.module(&recipe.root.module)?;
-    let functions = interface::functions(context.library.as_ref(), &context.catalog, &root.category)?;
-    match functions.first() {
+    let functions = context.catalog.functions(&root.category)?;
+    match functions.keys().next() {
         None => context.catalog.compile(recipe, super::tree::ROOT)?,
-        Some(function) => context.catalog.compile_probe(recipe, &function.name)?,
+        Some(function) => context.catalog.compile_probe(recipe, function)?,
     };
     Ok(())
 }

@@ -6,7 +6,6 @@ mod emit;
 pub mod failure;
 mod graph;
 mod input;
-mod interface;
 mod list;
 mod new;
 mod output;

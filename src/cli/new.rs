@@ -9,7 +9,7 @@ use shadewright::compiler::Category;
 use super::failure::Failure;
 use super::output::{say, say_json};
 use super::text::nearest;
-use super::{Context, Format, interface};
+use super::{Context, Format};
 
 /// Options of `new`.
 #[derive(Args)]
@@ -114,11 +114,11 @@ fn declaration(category: &Category, name: &str) -> String {
 
 /// The interface's own functions with their neutral bodies, to be edited.
 fn code(context: &Context, category: &str) -> Result<String, Failure> {
-    let functions = interface::functions(context.library.as_ref(), &context.catalog, category)?;
+    let functions = context.catalog.functions(category)?;
     if functions.is_empty() {
         return Ok(ROOT.to_owned());
     }
-    let texts: Vec<&str> = functions.iter().map(|function| function.text.as_str()).collect();
+    let texts: Vec<String> = functions.into_values().collect();
     Ok(format!("{}\n", texts.join("\n\n")))
 }
 
