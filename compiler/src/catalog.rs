@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::library::Library;
 use crate::limits;
-use crate::manifest::{CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, parse_category, parse_module, typed};
+use crate::manifest::{CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, check_category, check_module, parse_category, parse_module, typed};
 use crate::parse::scan::{Item, ItemKind, scan};
 use crate::parse::{Interface, Needs, SlotNeed, Unit, check_interface, compose, parse_unit};
 use crate::resolve::Place;
@@ -72,6 +72,9 @@ impl Catalog {
             let Some(text) = read(library.as_ref(), &path)? else { continue };
             match parse_category(&path, &text) {
                 Ok(parsed) => {
+                    if let Err(report) = check_category(&parsed) {
+                        found.extend(report.diagnostics);
+                    }
                     modules.extend(load_modules(library.as_ref(), &name, &mut found)?);
                     categories.push(Arc::new(Category { name, manifest: parsed.value, source: parsed.file }));
                 }
@@ -331,7 +334,12 @@ fn load_modules(library: &dyn Library, category: &str, found: &mut Vec<Diagnosti
             continue;
         };
         match parse_module(&path, &text) {
-            Ok(parsed) => modules.push(Arc::new(Module { name, category: category.to_owned(), manifest: parsed.value, source: parsed.file })),
+            Ok(parsed) => {
+                if let Err(report) = check_module(&parsed) {
+                    found.extend(report.diagnostics);
+                }
+                modules.push(Arc::new(Module { name, category: category.to_owned(), manifest: parsed.value, source: parsed.file }));
+            }
             Err(report) => found.extend(report.diagnostics),
         }
     }

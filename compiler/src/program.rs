@@ -1,10 +1,19 @@
 //! The compiler's product: one pass, linked, validated and reflected.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use crate::diagnostics::Report;
-use crate::reflect::Reflection;
-use crate::validate::Validated;
+use crate::catalog::Catalog;
+use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
+use crate::link::{link, write_source};
+use crate::manifest::{Node, PassDecl, parse_recipe};
+use crate::parse::chain;
+use crate::plan::{Plan, Roots, plan};
+use crate::reflect::{Reflection, reflect};
+use crate::resolve::{Instances, Place, Tree, resolve, resolve_root};
+use crate::validate::{Validated, validate};
+use crate::why;
+
+pub use crate::why::Why;
 
 /// One pass of a recipe, linked.
 #[derive(Debug)]
@@ -12,24 +21,8 @@ pub struct Program {
     validated: Validated,
     reflection: Reflection,
     hash: u128,
-    wgsl: String,
-}
-
-/// Why something is in a shader.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Why {
-    /// Emitted name that was asked for.
-    pub name: String,
-    /// `function`, `binding`, `parameter`, `override`, `struct` or `constant`.
-    pub kind: String,
-    /// Emitted function names from the entry point to the one that needs it.
-    pub path: Vec<String>,
-    /// Module it belongs to (category for an interface's own).
-    pub module: String,
-    /// Slot path of the instance in the recipe.
-    pub place: String,
-    /// `file:line:column` of the RON text that brought the module in: the recipe's line, or the manifest's where it is a default.
-    pub because: String,
+    plan: Plan,
+    wgsl: OnceLock<String>,
 }
 
 impl Program {
@@ -48,25 +41,50 @@ impl Program {
         self.hash
     }
 
-    /// The source form: the authors' own text, linked.
+    /// The source form: the authors' own text, linked. Written when first asked for.
     pub fn wgsl(&self) -> &str {
-        &self.wgsl
+        self.wgsl.get_or_init(|| write_source(&self.plan))
     }
 
     /// Why a function, binding, parameter, override, struct or constant is there; empty if it is not.
     pub fn why(&self, name: &str) -> Vec<Why> {
-        let _ = name;
-        Vec::new()
+        why::why(&self.plan, &self.reflection, name)
     }
+
+    /// The tree of the recipe as it was resolved, defaults included: a line a module with its slot path.
+    pub fn tree(&self) -> impl Iterator<Item = TreeLine<'_>> {
+        self.plan.tree.nodes.iter().enumerate().map(|(index, node)| TreeLine {
+            path: &node.path,
+            module: &node.module.name,
+            category: &node.module.category,
+            instance: &self.plan.instances.list[self.plan.instances.of_node[index]].name,
+            because: node.place.text(),
+        })
+    }
+}
+
+/// A module in its place in a resolved tree.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct TreeLine<'p> {
+    /// Slot path: `main`, `main.brdf.ndf`, `main.lights[1]`.
+    pub path: &'p str,
+    /// Module.
+    pub module: &'p str,
+    /// Its category.
+    pub category: &'p str,
+    /// Instance; equal subtrees share theirs.
+    pub instance: &'p str,
+    /// `file:line:column` of the text that put it there.
+    pub because: String,
 }
 
 /// A recipe with the text it came from, so that errors can point into it.
 #[derive(Clone, Debug)]
 pub struct Recipe {
     /// The tree.
-    pub root: crate::manifest::Node,
+    pub root: Node,
     /// The text it was read from; made up by serialising where it was built by a program.
-    pub source: Arc<crate::diagnostics::SourceFile>,
+    pub source: Arc<SourceFile>,
 }
 
 impl Recipe {
@@ -75,17 +93,89 @@ impl Recipe {
     /// # Errors
     /// The text is no RON, or no recipe.
     pub fn parse(name: &str, text: &str) -> Result<Self, Report> {
-        let _ = (name, text);
-        Err(Report::from(crate::diagnostics::Diagnostic::new("SW0000", "not written yet")))
+        let parsed = parse_recipe(name, text)?;
+        Ok(Self { root: parsed.value, source: parsed.file })
     }
 }
 
-impl From<crate::manifest::Node> for Recipe {
-    fn from(root: crate::manifest::Node) -> Self {
+impl From<Node> for Recipe {
+    fn from(root: Node) -> Self {
+        // A tree of strings, numbers and lists always serialises.
         let text = ron::to_string(&root).unwrap_or_default();
-        Self {
-            root,
-            source: crate::diagnostics::SourceFile::new("recipe", text),
+        Self { root, source: SourceFile::new("recipe", text) }
+    }
+}
+
+impl Catalog {
+    /// Links, validates and reflects one pass of a recipe: `main` for the root's own entry points,
+    /// `<instance>.<pass>` for a pass that a module of the tree declares.
+    ///
+    /// # Errors
+    /// Anything wrong with the recipe or with the modules it reaches.
+    pub fn compile(&self, recipe: &Recipe, pass: &str) -> Result<Program, Report> {
+        let tree = resolve(self, recipe)?;
+        let instances = Instances::find(self, &tree);
+        if pass == "main" {
+            return self.finish(tree, instances, &Roots::Main, pass);
+        }
+        let found = pass.rsplit_once('.').and_then(|(name, own)| {
+            let instance = instances.list.iter().position(|i| i.name == name)?;
+            let node = &tree.nodes[instances.list[instance].node];
+            Some((instance, own, node.module.manifest.passes.get(own)?))
+        });
+        match found {
+            Some((instance, _, PassDecl::Compute { entry, .. })) => {
+                let roots = Roots::Entry { instance, entry: entry.clone() };
+                self.finish(tree, instances, &roots, pass)
+            }
+            Some((instance, own, PassDecl::Draw { root, inherit, .. })) => {
+                let node = &tree.nodes[instances.list[instance].node];
+                let mut root = root.clone();
+                for slot in inherit {
+                    if let Some(filling) = recipe.root.fill.get(slot) {
+                        root.fill.insert(slot.clone(), filling.clone());
+                    }
+                }
+                let place = Place::new(&node.module.source).keys(&["passes", own, "root"]);
+                let module = self.module_at(&root.module, None, &place)?;
+                let tree = resolve_root(self, module, &root, place)?;
+                let instances = Instances::find(self, &tree);
+                self.finish(tree, instances, &Roots::Main, pass)
+            }
+            None => {
+                let mut known = vec!["main".to_owned()];
+                for instance in &instances.list {
+                    let passes = &tree.nodes[instance.node].module.manifest.passes;
+                    known.extend(passes.keys().map(|p| format!("{}.{p}", instance.name)));
+                }
+                let diagnostic = Diagnostic::new(codes::UNKNOWN_PASS_OF_RECIPE, format!("the recipe has no pass `{pass}`"));
+                Err(diagnostic.suggest(pass, "passes", known.iter().map(String::as_str)).into())
+            }
         }
     }
+
+    pub(crate) fn finish(&self, tree: Tree, instances: Instances, roots: &Roots, pass: &str) -> Result<Program, Report> {
+        let plan = plan(self, tree, instances, roots)?;
+        let module = link(&plan);
+        let hash = crate::hash::structural_hash(&module);
+        let validated = validate(module).map_err(|error| located(&plan, &error))?;
+        let reflection = reflect(self, &plan, &validated, hash, pass);
+        Ok(Program { validated, reflection, hash, plan, wgsl: OnceLock::new() })
+    }
+}
+
+/// naga's error about a linked module, in the authors' files.
+fn located(plan: &Plan, error: &naga::WithSpan<naga::valid::ValidationError>) -> Report {
+    let mut diagnostic = Diagnostic::new(codes::LINKED_INVALID, chain(error.as_inner()));
+    for (span, text) in error.spans() {
+        let Some(range) = span.to_range() else { continue };
+        let home = plan.homes.iter().rev().find(|h| h.base as usize <= range.start);
+        if let Some(home) = home {
+            let base = home.base as usize;
+            if let Some((file, place)) = home.unit.composed.locate(range.start - base..range.end.saturating_sub(base)) {
+                diagnostic = diagnostic.at(file, place, text.as_str());
+            }
+        }
+    }
+    diagnostic.note("the modules are valid each by itself, but not linked together").into()
 }

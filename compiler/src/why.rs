@@ -1,0 +1,139 @@
+//! Why something is in a shader: who calls it, whose it is, and which line of RON brought that module in.
+
+use crate::plan::{Body, GROUPS, Plan};
+use crate::reflect::{ParamPlace, Reflection};
+
+/// Why something is in a shader.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Why {
+    /// Emitted name that was asked for.
+    pub name: String,
+    /// `entry point`, `function`, `binding`, `parameter`, `override`, `struct` or `constant`.
+    pub kind: String,
+    /// Emitted function names from the entry point to the one that needs it.
+    pub path: Vec<String>,
+    /// Module it belongs to (category for an interface's own).
+    pub module: String,
+    /// Slot path of the instance in the recipe; empty for an interface's own.
+    pub place: String,
+    /// `file:line:column` of the RON text that brought the module in: the recipe's line, or the manifest's where it is a default.
+    pub because: String,
+}
+
+/// Answers for every emitted thing of this name; a parameter is also found by its own name.
+pub fn why(plan: &Plan, reflection: &Reflection, name: &str) -> Vec<Why> {
+    let mut found = Vec::new();
+    for (index, planned) in plan.functions.iter().enumerate() {
+        if planned.name == name {
+            let kind = if matches!(planned.body, Body::Entry(_)) { "entry point" } else { "function" };
+            found.push(answer(plan, name, kind, planned.home, path_to(plan, index)));
+        }
+    }
+    for param in &reflection.params {
+        let emitted = match &param.place {
+            ParamPlace::Uniform { member, .. } => member,
+            ParamPlace::Override { name } => name,
+            ParamPlace::Constant { .. } => &param.name,
+        };
+        if emitted == name || param.name == name || format!("{}.{}", param.instance, param.name) == name {
+            if let Some(home) = plan.instances.list.iter().position(|i| i.name == param.instance) {
+                found.push(answer(plan, name, "parameter", home, user(plan, home, |e, unit| reads_param(e, unit, &param.name))));
+            }
+        }
+    }
+    if let Some(block) = plan.blocks.iter().find(|b| format!("{}_params", GROUPS[b.group as usize]) == name) {
+        for member in &block.members {
+            found.push(answer(plan, name, "binding", member.home, user(plan, member.home, |e, unit| reads_param(e, unit, &member.param))));
+        }
+    }
+    for global in &plan.globals {
+        let unit = &plan.homes[global.home].unit;
+        let own = unit.ir.global_variables[global.handle].name.clone().unwrap_or_default();
+        let emitted = plan.names.get(&(global.home, own.clone())).unwrap_or(&own);
+        if emitted == name {
+            let path = (0..plan.functions.len()).find(|&f| reads_global(plan, f, global.home, global.handle));
+            found.push(answer(plan, name, "binding", global.home, path.map_or_else(Vec::new, |f| path_to(plan, f))));
+        }
+    }
+    if found.is_empty() {
+        found.extend(plan.names.iter().filter(|(_, emitted)| *emitted == name).filter_map(|((home, own), _)| item(plan, name, *home, own)));
+    }
+    found
+}
+
+/// A struct or constant.
+fn item(plan: &Plan, name: &str, home: usize, own: &str) -> Option<Why> {
+    use crate::parse::scan::ItemKind;
+    let unit = &plan.homes[home].unit;
+    let kind = match unit.scan.item(own)?.kind {
+        ItemKind::Struct => "struct",
+        ItemKind::Constant | ItemKind::Alias => "constant",
+        ItemKind::Override => "override",
+        _ => return None,
+    };
+    // The first living function whose text names it, in its own unit or in one that knows the interface.
+    let user = plan.functions.iter().position(|p| {
+        let unit = &plan.homes[p.home].unit;
+        let knows = p.home == home || matches!(unit.origin(own), Some(crate::parse::Origin::Interface(_)));
+        let mentions = |item: &crate::parse::scan::Item| {
+            item.references.iter().any(|r| &unit.file.text[unit.scan.tokens[r.token].range()] == own)
+        };
+        knows && unit.scan.item(p.source_name(&plan.homes)).is_some_and(mentions)
+    })?;
+    Some(answer(plan, name, kind, home, path_to(plan, user)))
+}
+
+fn answer(plan: &Plan, name: &str, kind: &str, home: usize, path: Vec<String>) -> Why {
+    let (module, place, because) = match plan.homes[home].instance {
+        Some(instance) => {
+            let node = &plan.tree.nodes[plan.instances.list[instance].node];
+            (node.module.name.clone(), node.path.clone(), node.place.text())
+        }
+        None => {
+            let unit = &plan.homes[home].unit;
+            (unit.interface.clone().unwrap_or_default(), String::new(), unit.file.name.clone())
+        }
+    };
+    Why { name: name.to_owned(), kind: kind.to_owned(), path, module, place, because }
+}
+
+/// Emitted names from the entry point to a function.
+fn path_to(plan: &Plan, function: usize) -> Vec<String> {
+    let mut path = vec![plan.functions[function].name.clone()];
+    let mut at = function;
+    while let Some(caller) = plan.functions[at].caller {
+        path.insert(0, plan.functions[caller].name.clone());
+        at = caller;
+    }
+    path
+}
+
+/// The way to the first function of a home with a living expression that fits.
+fn user(plan: &Plan, home: usize, fits: impl Fn(&naga::Function, &crate::parse::Unit) -> bool) -> Vec<String> {
+    let found = plan.functions.iter().position(|p| p.home == home && p.ir(&plan.homes).is_some_and(|f| fits(f, &plan.homes[home].unit)));
+    found.map_or_else(Vec::new, |f| path_to(plan, f))
+}
+
+fn reads_param(function: &naga::Function, unit: &crate::parse::Unit, param: &str) -> bool {
+    let index = unit.needs.uniforms.get_index_of(param).map(|i| i as u32);
+    let constant = crate::parse::constant_name(param);
+    function.expressions.iter().any(|(_, e)| match *e {
+        naga::Expression::AccessIndex { base, index: member } => {
+            Some(member) == index
+                && matches!(function.expressions[base], naga::Expression::GlobalVariable(g) if crate::plan::is_params(unit, g))
+        }
+        naga::Expression::Constant(c) => unit.ir.constants[c].name.as_ref() == Some(&constant),
+        naga::Expression::Override(o) => unit.ir.overrides[o].name.as_ref() == Some(&constant),
+        _ => false,
+    })
+}
+
+fn reads_global(plan: &Plan, function: usize, home: usize, global: naga::Handle<naga::GlobalVariable>) -> bool {
+    let planned = &plan.functions[function];
+    planned.ir(&plan.homes).is_some_and(|f| {
+        f.expressions.iter().any(|(h, e)| match *e {
+            naga::Expression::GlobalVariable(g) => planned.live[h.index()] && crate::plan::declaring(plan, planned.home, g) == (home, global),
+            _ => false,
+        })
+    })
+}
