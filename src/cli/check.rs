@@ -164,7 +164,7 @@ fn cases(context: &Context, module: &str) -> Result<(), Failure> {
 }
 
 /// Compiles all that a tree can be asked for: the root's entry points, or each function of its interface, and every pass.
-fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
+pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     let root = context.catalog.module(&recipe.root.module)?;
     let functions = context.catalog.functions(&root.category)?;
     let mut passes = BTreeSet::new();
