@@ -30,7 +30,10 @@ fn spirv_val_accepts_spirv() {
     let file = folder.path().join("shader.spv");
     let path = file.to_str().expect("UTF-8");
     good(&["emit", SHADOWED, "--target", "spirv", "-o", path]);
-    let ran = std::process::Command::new("spirv-val").args(["--target-env", "vulkan1.1", path]).output().expect("spirv-val is installed");
+    let ran = std::process::Command::new("spirv-val")
+        .args(["--target-env", "vulkan1.1", path])
+        .output()
+        .expect("spirv-val is installed");
     assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
 }
 
@@ -58,13 +61,20 @@ fn json_holds_shader_and_reflection() {
 fn files_hold_the_same_as_standard_output() {
     let folder = tempfile::tempdir().expect("a folder");
     let (shader, reflection) = (folder.path().join("a.wgsl"), folder.path().join("a.json"));
-    let ran = good(&["emit", SHADOWED, "-o", shader.to_str().unwrap(), "--reflect", reflection.to_str().unwrap()]);
+    let ran = good(&[
+        "emit",
+        SHADOWED,
+        "-o",
+        shader.to_str().unwrap(),
+        "--reflect",
+        reflection.to_str().unwrap(),
+    ]);
     assert_eq!(ran.text(), "");
     let text = std::fs::read_to_string(&shader).expect("the shader");
     assert_eq!(text, good(&["emit", SHADOWED]).text());
     let json: Value = serde_json::from_slice(&std::fs::read(&reflection).expect("the reflection")).expect("JSON");
     let bindings = json["bindings"].as_array().expect("a list");
-    assert!(bindings.iter().any(|binding| binding["name"] == "shadow_map"));
+    assert!(bindings.iter().any(|binding| binding["name"] == "cube_map_shadow_map"));
     for binding in bindings {
         let (group, number, name) = (&binding["group"], &binding["binding"], binding["name"].as_str().unwrap());
         assert!(text.contains(&format!("@group({group}) @binding({number})")), "{name}");
@@ -79,7 +89,10 @@ fn equal_input_gives_equal_bytes() {
     let here = good(&["emit", GLOSSY]).out;
     let elsewhere = tempfile::tempdir().expect("a folder");
     let mut command = shadewright();
-    command.current_dir(elsewhere.path()).env("RAYON_NUM_THREADS", "1").args(["emit", GLOSSY]);
+    command
+        .current_dir(elsewhere.path())
+        .env("RAYON_NUM_THREADS", "1")
+        .args(["emit", GLOSSY]);
     assert_eq!(here, support::finish(&mut command).out);
 }
 
@@ -89,14 +102,32 @@ fn freeze_makes_constants() {
     let tonemap = r#"(module: "display", fill: {"post": [(module: "tonemap", fill: {"exposure": "manual"})]})"#;
     let json = good(&["emit", tonemap, "--freeze", "main.post[0].exposure.ev100=3.5", "--format", "json"]).json();
     let params = json["reflection"]["params"].as_array().expect("a list");
-    assert!(!params.iter().any(|param| param["name"] == "ev100" && param["place"]["kind"] == "uniform"), "{params:?}");
+    assert!(
+        !params
+            .iter()
+            .any(|param| param["name"] == "ev100" && param["place"]["kind"] == "uniform"),
+        "{params:?}"
+    );
     let json = good(&["emit", tonemap, "--format", "json"]).json();
     let params = json["reflection"]["params"].as_array().expect("a list");
-    assert!(params.iter().any(|param| param["name"] == "ev100" && param["place"]["kind"] == "uniform"), "{params:?}");
+    assert!(
+        params
+            .iter()
+            .any(|param| param["name"] == "ev100" && param["place"]["kind"] == "uniform"),
+        "{params:?}"
+    );
 
     bad(&["emit", tonemap, "--freeze", "post.exposure.ev10=1"], 1, &["`ev10`", "`ev100`"]);
-    bad(&["emit", tonemap, "--freeze", "post.exposur.ev100=1"], 1, &["`exposur`", "`exposure`"]);
-    bad(&["emit", tonemap, "--freeze", "post[7].exposure.ev100=1"], 1, &["nothing stands in `post[7]`"]);
+    bad(
+        &["emit", tonemap, "--freeze", "post.exposur.ev100=1"],
+        1,
+        &["`exposur`", "`exposure`"],
+    );
+    bad(
+        &["emit", tonemap, "--freeze", "post[7].exposure.ev100=1"],
+        1,
+        &["nothing stands in `post[7]`"],
+    );
     bad(&["emit", tonemap, "--freeze", "post.exposure.ev100=100"], 1, &["SW0302"]);
     bad(&["emit", tonemap, "--freeze", "ev100"], 2, &["PARAM=VALUE"]);
 }
@@ -134,8 +165,16 @@ fn a_failure_leaves_old_files_alone() {
     let (shader, reflection) = (shader.to_str().unwrap(), reflection.to_str().unwrap());
     bad(&["emit", "absent-module", "-o", shader, "--reflect", reflection], 1, &["SW0201"]);
     // The second file cannot be written: the first must not have been.
-    bad(&["emit", MATTE, "-o", shader, "--reflect", "/nonexistent/a.json"], 1, &["/nonexistent/a.json"]);
-    bad(&["emit", MATTE, "-o", shader, "--reflect", folder.path().to_str().unwrap()], 1, &["is a folder"]);
+    bad(
+        &["emit", MATTE, "-o", shader, "--reflect", "/nonexistent/a.json"],
+        1,
+        &["/nonexistent/a.json"],
+    );
+    bad(
+        &["emit", MATTE, "-o", shader, "--reflect", folder.path().to_str().unwrap()],
+        1,
+        &["is a folder"],
+    );
     bad(&["emit", MATTE, "-o", "-", "--reflect", "-"], 2, &["standard output"]);
     assert_eq!(std::fs::read_to_string(shader).unwrap(), "old");
     assert_eq!(std::fs::read_to_string(reflection).unwrap(), "old");
@@ -164,7 +203,10 @@ fn links_and_devices_stay() {
 fn a_closed_pipe_is_no_error() {
     let script = format!("{} list | true; echo ${{PIPESTATUS[0]}}", env!("CARGO_BIN_EXE_shadewright"));
     for _ in 0..5 {
-        let ran = std::process::Command::new("bash").args(["-c", &script]).output().expect("bash runs");
+        let ran = std::process::Command::new("bash")
+            .args(["-c", &script])
+            .output()
+            .expect("bash runs");
         assert_eq!(String::from_utf8_lossy(&ran.stdout), "0\n");
         assert_eq!(String::from_utf8_lossy(&ran.stderr), "");
     }
@@ -174,7 +216,15 @@ fn a_closed_pipe_is_no_error() {
 #[test]
 fn odd_input_is_status_1() {
     let deep = format!("{}\"x\"{}", "[".repeat(10_000), "]".repeat(10_000));
-    for text in ["", "()", "(module: 3)", "(module: \"forward\", fil: {})", "\u{0}", "forward forward", &deep] {
+    for text in [
+        "",
+        "()",
+        "(module: 3)",
+        "(module: \"forward\", fil: {})",
+        "\u{0}",
+        "forward forward",
+        &deep,
+    ] {
         let ran = run_with_input(&["emit", "-"], text);
         assert_eq!(ran.status, 1, "{:?}: {}", text.get(..40.min(text.len())), ran.err);
         assert!(!ran.err.is_empty());
@@ -234,7 +284,12 @@ fn check_finds_all_that_is_wrong() {
     assert!(ran.err.contains("SW0202") && ran.err.contains("SW0302"), "{}", ran.err);
     let ran = run(&["check", "--format", "json", &good_one, &category]);
     let json = ran.json();
-    let wrong = json.as_array().unwrap().iter().find(|item| item["ok"] == false).expect("one is wrong");
+    let wrong = json
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|item| item["ok"] == false)
+        .expect("one is wrong");
     assert_eq!(wrong["diagnostics"][0]["code"], "SW0202");
     bad(&["check", folder.path().join("absent").to_str().unwrap()], 1, &["absent"]);
     bad(&["check", folder.path().to_str().unwrap()], 1, &["holds no module"]);

@@ -44,20 +44,32 @@ fn probe_gives_results_in_order() {
             assert!((value - expected).abs() < 1e-7, "row {row}: {value} instead of {expected}");
         }
     }
-    assert!(ran.text().contains("0.31830987\n") || ran.text().contains("0.31830987,"), "{}", ran.text());
+    assert!(
+        ran.text().contains("0.31830987\n") || ran.text().contains("0.31830987,"),
+        "{}",
+        ran.text()
+    );
 }
 
 /// Catches a subtree's fillings or a row's parameters that are ignored.
 #[test]
 fn probe_takes_trees_and_parameters() {
     let folder = tempfile::tempdir().expect("a folder");
-    let inputs = file(folder.path(), "in.json", r#"[{"params": {"ev100": 3}}, {"params": {"ev100": 4}}, {}]"#);
+    let inputs = file(
+        folder.path(),
+        "in.json",
+        r#"[{"params": {"ev100": 3}}, {"params": {"ev100": 4}}, {}]"#,
+    );
     let json = good(&["probe", "manual", "exposure", "--inputs", &inputs]).json();
     let factors = floats(&json["results"]);
     assert!((factors[0] / factors[1] - 2.0).abs() < 1e-5, "{factors:?}");
     assert!((factors[1] / factors[2] - 256.0).abs() < 1e-2, "{factors:?}");
 
-    let inputs = file(folder.path(), "glossy.json", r#"[{"s": {"alpha": 0.25}, "v": [0, 0, 1], "l": [0, 0, 1]}]"#);
+    let inputs = file(
+        folder.path(),
+        "glossy.json",
+        r#"[{"s": {"alpha": 0.25}, "v": [0, 0, 1], "l": [0, 0, 1]}]"#,
+    );
     let recipe = r#"(module: "microfacet", fill: {"ndf": "ggx"})"#;
     let json = good(&["probe", recipe, "brdf", "--inputs", &inputs]).json();
     // D = 1 / (pi alpha^2), V = 1/4, F = 0.04, and the diffuse base, at most 0.5 / pi.
@@ -104,7 +116,10 @@ fn probe_refuses_bad_rows() {
     bad(&["probe", "lambert", "brdf"], 2, &["--inputs"]);
     assert_eq!(std::fs::read_to_string(&out).unwrap(), "old");
     good(&["probe", "lambert", "brdf", "--inputs", &inputs, "-o", &out]);
-    assert_eq!(serde_json::from_str::<Value>(&std::fs::read_to_string(&out).unwrap()).unwrap()["function"], "brdf");
+    assert_eq!(
+        serde_json::from_str::<Value>(&std::fs::read_to_string(&out).unwrap()).unwrap()["function"],
+        "brdf"
+    );
     assert_eq!(names(folder.path()), ["in.json", "out.json"]);
 }
 
@@ -171,7 +186,11 @@ fn render_writes_png_and_exr() {
     assert_eq!(good(&["render", &scene, "-o", &png]).text(), "");
     let picture = image::open(&png).expect("a PNG file").to_rgb8();
     assert_eq!(picture.dimensions(), (24, 16));
-    assert!(picture.pixels().all(|p| p.0.iter().all(|c| (60..220).contains(c))), "{:?}", picture.get_pixel(12, 8));
+    assert!(
+        picture.pixels().all(|p| p.0.iter().all(|c| (60..220).contains(c))),
+        "{:?}",
+        picture.get_pixel(12, 8)
+    );
 
     good(&["render", &scene, "-o", hdr, "--size", "10x20", "--view", "beauty"]);
     let (width, height, pixels) = exr(hdr);
@@ -197,7 +216,11 @@ fn set_changes_the_scene() {
     let ran = run_with_input(&["render", "-", "-o", hdr, "--size", "4x4"], SCENE);
     assert_eq!((ran.status, ran.err.as_str()), (0, ""));
     assert!((exr(hdr).2[5][1] / PLANE - 1.0).abs() < 1e-4);
-    bad(&["render", &scene, "-o", hdr, "--set", "lights[moon].fields.illuminance=1"], 1, &["leads nowhere"]);
+    bad(
+        &["render", &scene, "-o", hdr, "--set", "lights[moon].fields.illuminance=1"],
+        1,
+        &["leads nowhere"],
+    );
     bad(&["render", &scene, "-o", hdr, "--set", "size"], 2, &["PATH=VALUE"]);
 }
 

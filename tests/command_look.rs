@@ -14,7 +14,13 @@ fn strings<'a>(list: &'a Value, member: &str) -> Vec<&'a str> {
 #[test]
 fn list_shows_modules_by_category() {
     let all = good(&["list"]);
-    for line in ["brdf: How a surface reflects light", "  lambert", "  microfacet", "  point", "  forward"] {
+    for line in [
+        "brdf: How a surface reflects light",
+        "  lambert",
+        "  microfacet",
+        "  point",
+        "  forward",
+    ] {
         assert!(all.text().contains(line), "no `{line}` in\n{}", all.text());
     }
     let json = good(&["list", "--category", "brdf", "--format", "json"]).json();
@@ -115,7 +121,11 @@ fn why_names_module_and_place() {
 /// Catches a reason for what is not there.
 #[test]
 fn why_knows_what_is_not_there() {
-    bad(&["why", MATTE, "shadow_map"], 1, &["`shadow_map` is not in the shader of pass `main`"]);
+    bad(
+        &["why", MATTE, "shadow_map"],
+        1,
+        &["`shadow_map` is not in the shader of pass `main`"],
+    );
     bad(&["why", MATTE, "fragment_man"], 1, &["`fragment_main`"]);
     bad(&["why", MATTE, "brdf", "--pass", "absent"], 1, &["absent"]);
 }
@@ -130,13 +140,45 @@ fn diff_lays_differences_to_choices() {
         serde_json::json!([{"path": "main.lights[0].visibility", "a": "visibility/none", "b": "visibility/cube-map"}])
     );
     let added = json["bindings"]["added"].as_array().expect("a list");
-    let map = added.iter().find(|item| item["name"] == "shadow_map").expect("the map is added");
+    let map = added
+        .iter()
+        .find(|item| item["name"] == "cube_map_shadow_map")
+        .expect("the map is added");
     assert_eq!(map["because"], "main.lights[0].visibility");
-    assert!(json["bindings"]["removed"].as_array().expect("a list").iter().all(|item| item["name"] != "shadow_map"));
+    assert!(
+        json["bindings"]["removed"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .all(|item| item["name"] != "cube_map_shadow_map")
+    );
 
     let text = good(&["diff", SHADOWED, MATTE]);
-    assert!(text.text().contains("main.lights[0].visibility: visibility/cube-map -> visibility/none"), "{}", text.text());
-    assert!(text.text().contains("- shadow_map  "), "{}", text.text());
+    assert!(
+        text.text()
+            .contains("main.lights[0].visibility: visibility/cube-map -> visibility/none"),
+        "{}",
+        text.text()
+    );
+    assert!(text.text().contains("- cube_map_shadow_map  "), "{}", text.text());
+}
+
+/// Catches two choices that are laid to one.
+#[test]
+fn diff_tells_choices_apart() {
+    let other = r#"(module: "forward", fill: {"brdf": "microfacet", "lights": ["point", "directional"]})"#;
+    let json = good(&["diff", MATTE, other, "--format", "json"]).json();
+    assert_eq!(strings(&json["choices"], "path"), ["main.brdf", "main.lights[1]"]);
+    let because = |name: &str| {
+        let added = json["functions"]["added"].as_array().expect("a list");
+        added
+            .iter()
+            .find(|item| item["name"] == name)
+            .unwrap_or_else(|| panic!("no {name} in {added:?}"))["because"]
+            .clone()
+    };
+    assert_eq!(because("ggx_distribution"), "main.brdf");
+    assert_eq!(because("directional_light"), "main.lights[1]");
 }
 
 /// Catches a difference between a recipe and itself, and a function that only one of two BRDFs has and is not named.
@@ -146,8 +188,13 @@ fn diff_of_equals_is_empty() {
     assert_eq!(json["equal"], true);
     assert_eq!(json["choices"], serde_json::json!([]));
     let text = good(&["diff", MATTE, GLOSSY]);
-    assert!(text.text().contains("+ distribution"), "{}", text.text());
-    assert!(text.text().contains("because of main.brdf"), "{}", text.text());
+    assert!(text.text().contains("+ ggx_distribution "), "{}", text.text());
+    // Lambert's surface has no f0, so that its material doesn't read this: owed to the BRDF, though not below it.
+    assert!(
+        text.text().contains("+ metalness.reflectance  because of main.brdf\n"),
+        "{}",
+        text.text()
+    );
 }
 
 /// Catches two recipes read from one standard input, and `-` that reads nothing.
@@ -174,5 +221,9 @@ fn usage_is_status_2() {
 /// Catches a folder of modules that is not there and is passed over in silence.
 #[test]
 fn an_absent_modules_folder_is_an_error() {
-    bad(&["list", "--modules", "/nonexistent"], 1, &["--modules /nonexistent: there is no such folder"]);
+    bad(
+        &["list", "--modules", "/nonexistent"],
+        1,
+        &["--modules /nonexistent: there is no such folder"],
+    );
 }

@@ -19,7 +19,11 @@ fn a_skeleton_of_every_category_passes_check() {
         assert_eq!(names(&made), ["README.md", "cases.ron", "module.ron", "my-own.wgsl"], "{category}");
         assert!(ran.text().contains("module.ron"));
         good(&["check", made.to_str().unwrap()]);
-        assert!(good(&["show", &format!("{category}/my-own"), "--modules", root]).text().starts_with(&format!("{category}/my-own")));
+        assert!(
+            good(&["show", &format!("{category}/my-own"), "--modules", root])
+                .text()
+                .starts_with(&format!("{category}/my-own"))
+        );
     }
     // All at once, as a library.
     good(&["check", root]);
@@ -34,8 +38,16 @@ fn the_examples_in_the_comments_are_valid() {
     let made = folder.path().join("brdf/mine");
     let declaration = std::fs::read_to_string(made.join("module.ron")).unwrap();
     let example = |line: &str| line.trim_start().starts_with("// \"");
-    let uncommented: Vec<String> =
-        declaration.lines().map(|line| if example(line) { line.replacen("// ", "", 1) } else { line.to_owned() }).collect();
+    let uncommented: Vec<String> = declaration
+        .lines()
+        .map(|line| {
+            if example(line) {
+                line.replacen("// ", "", 1)
+            } else {
+                line.to_owned()
+            }
+        })
+        .collect();
     assert_ne!(uncommented.join("\n"), declaration.trim_end());
     std::fs::write(made.join("module.ron"), uncommented.join("\n")).unwrap();
     let wgsl = std::fs::read_to_string(made.join("mine.wgsl")).unwrap();

@@ -69,7 +69,10 @@ fn the_tutorial_works_as_written() {
                 commands += block.text.lines().filter(|line| line.starts_with("shadewright ")).count();
             }
             ("text", "") => assert_eq!(printed, block.text, "README.md:{}", block.line),
-            (_, "") => panic!("README.md:{}: a block that is neither a command, nor output, nor a file", block.line),
+            (_, "") => panic!(
+                "README.md:{}: a block that is neither a command, nor output, nor a file",
+                block.line
+            ),
             (_, file) => {
                 let file = folder.path().join(file);
                 std::fs::create_dir_all(file.parent().expect("a folder")).expect("made");
@@ -88,8 +91,15 @@ fn the_tutorial_works_as_written() {
         }
     }
     let has_param = |name: &str| read(name).contains("k: f32");
-    assert!(has_param("moon.wgsl") && !has_param("moon-frozen.wgsl"), "{}", read("moon-frozen.wgsl"));
+    assert!(
+        has_param("moon.wgsl") && !has_param("moon-frozen.wgsl"),
+        "{}",
+        read("moon-frozen.wgsl")
+    );
     let picture = image::open(folder.path().join("moon.png")).expect("a picture").to_rgb8();
     let (bright, dark) = (picture.pixels().map(|p| p[1]).max(), picture.pixels().map(|p| p[1]).min());
-    assert!(bright > Some(100) && dark < Some(20), "the picture goes from {dark:?} to {bright:?}");
+    assert!(
+        bright > Some(100) && dark < Some(20),
+        "the picture goes from {dark:?} to {bright:?}"
+    );
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use clap::Args;
 use serde_json::{Value as Json, json};
 use shadewright::compiler::manifest::{Arity, Filling, Node};
-use shadewright::compiler::{Module, Recipe};
+use shadewright::compiler::{Module, Recipe, Report};
 
 use super::failure::Failure;
 use super::output::{say, say_json};
@@ -176,7 +176,11 @@ pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
         note(&context.catalog.compile(recipe, super::tree::ROOT)?);
     }
     for function in functions.keys() {
-        note(&context.catalog.compile_probe(recipe, function)?);
+        match context.catalog.compile_probe(recipe, function) {
+            Ok(program) => note(&program),
+            Err(report) if only_for_fragments(&report) => {}
+            Err(report) => return Err(report.into()),
+        }
     }
     for pass in &passes {
         context.catalog.compile(recipe, pass)?;
@@ -191,11 +195,22 @@ pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
 pub fn links(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     let root = context.catalog.module(&recipe.root.module)?;
     let functions = context.catalog.functions(&root.category)?;
-    match functions.keys().next() {
-        None => context.catalog.compile(recipe, super::tree::ROOT)?,
-        Some(function) => context.catalog.compile_probe(recipe, function)?,
+    let linked = match functions.keys().next() {
+        None => context.catalog.compile(recipe, super::tree::ROOT),
+        Some(function) => context.catalog.compile_probe(recipe, function),
     };
-    Ok(())
+    match linked {
+        Err(report) if !only_for_fragments(&report) => Err(report.into()),
+        _ => Ok(()),
+    }
+}
+
+/// A function that takes screen-space derivatives (any `textureSample`) links, but only fragments can call it, no probe.
+fn only_for_fragments(report: &Report) -> bool {
+    report
+        .diagnostics
+        .iter()
+        .all(|diagnostic| diagnostic.message.contains("forbidden at this stage"))
 }
 
 /// A module with its slots' defaults; slots that need a module and have no default get the first that fits.

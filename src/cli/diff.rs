@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use clap::Args;
 use serde::Serialize;
 use shadewright::compiler::Program;
+use shadewright::compiler::reflect::{Binding, BindingType, Layout, ParamPlace};
 
 use super::failure::Failure;
 use super::output::{say, say_json};
@@ -109,8 +110,11 @@ impl Side {
     }
 
     /// The choice to which something of this shader is owed: the deepest one above the place of the thing itself,
-    /// or else of the nearest of its callers.
+    /// or else of the nearest of its callers. All is owed to an only choice.
     fn because(&self, name: &str, choices: &[Choice]) -> Option<String> {
+        if let [only] = choices {
+            return Some(only.path.clone());
+        }
         let reasons = self.program.why(name);
         let own = reasons.iter().find_map(|reason| above(&reason.place, choices));
         let reflection = self.program.reflection();
@@ -124,8 +128,29 @@ impl Side {
             let callers = reasons.iter().flat_map(|reason| reason.path.iter().rev());
             callers.flat_map(places_of).find_map(|place| above(place, choices))
         };
-        own.or_else(of_callers)
+        own.or_else(of_callers).or_else(|| {
+            // A struct that only a binding's type names.
+            let binding = reflection
+                .bindings
+                .iter()
+                .find(|binding| binding.name != name && layout_of(binding).is_some_and(|l| names(l, name)));
+            binding.and_then(|binding| self.because(&binding.name, choices))
+        })
     }
+}
+
+/// Layout of a buffer's contents.
+fn layout_of(binding: &Binding) -> Option<&Layout> {
+    match &binding.ty {
+        BindingType::Uniform { layout } | BindingType::Storage { layout, .. } => Some(layout),
+        _ => None,
+    }
+}
+
+/// Whether a type is, or holds, the struct of this name.
+fn names(layout: &Layout, name: &str) -> bool {
+    let members = layout.members.iter().map(|member| &member.layout);
+    layout.ty == name || members.chain(layout.element.as_deref()).any(|inner| names(inner, name))
 }
 
 fn above(place: &str, choices: &[Choice]) -> Option<String> {
@@ -192,7 +217,6 @@ fn bindings(program: &Program) -> BTreeMap<String, String> {
 }
 
 fn params(program: &Program) -> BTreeMap<String, String> {
-    use shadewright::compiler::reflect::ParamPlace;
     let params = program.reflection().params.iter();
     params
         .map(|param| {

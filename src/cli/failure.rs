@@ -106,7 +106,10 @@ const BUG: u8 = 70;
 /// One line for a bug of ours.
 fn bug(what: &str) -> String {
     let version = env!("CARGO_PKG_VERSION");
-    format!("shadewright {version}: this is a bug of ours, please report it: {}", what.replace('\n', " "))
+    format!(
+        "shadewright {version}: this is a bug of ours, please report it: {}",
+        what.replace('\n', " ")
+    )
 }
 
 /// Runs a command to its exit status. A panic is a bug of ours: one line and status 70.

@@ -121,7 +121,10 @@ mod tests {
     #[test]
     fn contradicting_columns_are_errors() {
         assert_eq!(rows_of_csv("a,a\n1,2\n"), Err("there are two columns for `a`".to_owned()));
-        assert_eq!(rows_of_csv("a,a.b\n1,2\n"), Err("there are columns for `a` and for a part of it".to_owned()));
+        assert_eq!(
+            rows_of_csv("a,a.b\n1,2\n"),
+            Err("there are columns for `a` and for a part of it".to_owned())
+        );
         assert!(rows_of_csv("a,b\n1\n").is_err_and(|why| why.contains("record 1")));
     }
 }

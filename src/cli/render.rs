@@ -77,7 +77,9 @@ pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
     match kind {
         Kind::Exr => frame.display = None,
         Kind::Png if frame.display.is_none() => {
-            return Err(Failure::message("the scene has no `display` pass, so there is only an HDR frame: name an .exr file"));
+            return Err(Failure::message(
+                "the scene has no `display` pass, so there is only an HDR frame: name an .exr file",
+            ));
         }
         Kind::Png => {}
     }
@@ -101,7 +103,11 @@ pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
 
 fn read(path: &Path) -> Result<SceneFile, Failure> {
     let text = input::text(path)?;
-    let name = if path == Path::new("-") { "standard input".into() } else { path.to_string_lossy() };
+    let name = if path == Path::new("-") {
+        "standard input".into()
+    } else {
+        path.to_string_lossy()
+    };
     Ok(SceneFile::parse(&name, &text, path.parent().unwrap_or(Path::new("")))?)
 }
 

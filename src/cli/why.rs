@@ -1,6 +1,7 @@
 //! `why`: what brought something into a shader.
 
 use clap::Args;
+use shadewright::compiler::reflect::Fill;
 use shadewright::compiler::{Program, Recipe};
 
 use super::failure::Failure;
@@ -13,7 +14,7 @@ use super::{Context, Format, input};
 pub struct Options {
     /// File, inline RON tree, module name, or - for standard input
     recipe: String,
-    /// Function, binding, parameter, override, struct or constant, by its emitted name
+    /// Function, binding, parameter, override, struct or constant, by its emitted name or its author's
     name: String,
     /// Which pass: the root's own, or INSTANCE.PASS for one that a module of the tree declares
     #[arg(long, default_value = "main")]
@@ -25,7 +26,10 @@ pub struct Options {
 pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
     let recipe: Recipe = input::recipe(&options.recipe)?;
     let program = context.catalog.compile(&recipe, &options.pass)?;
-    let reasons = program.why(&options.name);
+    let mut reasons = program.why(&options.name);
+    if reasons.is_empty() {
+        reasons = emitted(&program, &options.name).iter().flat_map(|name| program.why(name)).collect();
+    }
     if reasons.is_empty() {
         let near = nearest(&options.name, names(&program));
         let (name, pass) = (&options.name, &options.pass);
@@ -42,6 +46,20 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
         text.push_str(&format!("  because  {}\n", reason.because));
     }
     say(&text)
+}
+
+/// Emitted names of what its authors call by this name.
+fn emitted(program: &Program, name: &str) -> Vec<String> {
+    let reflection = program.reflection();
+    let functions = reflection.functions.iter().filter(|function| function.source == name);
+    let bindings = reflection
+        .bindings
+        .iter()
+        .filter(|binding| matches!(&binding.fill, Fill::Resource { resource, .. } if resource == name));
+    functions
+        .map(|function| function.name.clone())
+        .chain(bindings.map(|binding| binding.name.clone()))
+        .collect()
 }
 
 /// Everything that can be asked for, nearly: what reflection names.
