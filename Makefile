@@ -13,7 +13,7 @@ picture:
 	./setup
 	mkdir -p out
 	$(CARGO) run -- render examples/scenes/first.scene.ron -o out/first.png
-	$(CARGO) run -q -- emit examples/recipes/first.recipe.ron -o out/first.wgsl
+	$(CARGO) run -q -- emit examples/recipes/forward.recipe.ron -o out/first.wgsl
 	@echo "out/first.png and out/first.wgsl are there"
 
 test:

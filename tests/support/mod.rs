@@ -18,6 +18,10 @@ pub const GLOSSY: &str = r#"(module: "forward", fill: {"brdf": "microfacet", "li
 pub fn shadewright() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_shadewright"));
     command.timeout(std::time::Duration::from_secs(300));
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // Drivers complain on standard error where it isn't set.
+        command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
+    }
     command
 }
 
