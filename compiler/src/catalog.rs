@@ -35,6 +35,8 @@ pub struct Module {
     pub manifest: ModuleManifest,
     /// `module.ron`.
     pub source: Arc<SourceFile>,
+    /// Its parsed text, of modules that the compiler makes itself.
+    pub(crate) unit: Option<Arc<Unit>>,
 }
 
 /// A parsed unit by what it was parsed from: module and constants.
@@ -219,6 +221,9 @@ impl Catalog {
 
     /// A module, parsed with these constants.
     pub(crate) fn unit(&self, module: &Arc<Module>, constants: &IndexMap<String, (Value, Typed)>) -> Result<Arc<Unit>, Report> {
+        if let Some(unit) = &module.unit {
+            return Ok(Arc::clone(unit));
+        }
         let values = constants.iter().map(|(n, (_, v))| (n.clone(), v.wgsl())).collect();
         let key = (format!("{}/{}", module.category, module.name), values);
         if let Some(done) = lock(&self.units).get(&key) {
@@ -338,7 +343,7 @@ fn load_modules(library: &dyn Library, category: &str, found: &mut Vec<Diagnosti
                 if let Err(report) = check_module(&parsed) {
                     found.extend(report.diagnostics);
                 }
-                modules.push(Arc::new(Module { name, category: category.to_owned(), manifest: parsed.value, source: parsed.file }));
+                modules.push(Arc::new(Module { name, category: category.to_owned(), manifest: parsed.value, source: parsed.file, unit: None }));
             }
             Err(report) => found.extend(report.diagnostics),
         }

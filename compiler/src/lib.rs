@@ -1,9 +1,11 @@
 //! Links WGSL modules declared in RON into one validated naga module.
 
+pub mod canonical;
 pub mod catalog;
 mod link;
 mod parse;
 mod plan;
+mod probe;
 mod resolve;
 pub mod diagnostics;
 pub mod emit;

@@ -248,6 +248,7 @@ mod tests {
         assert!(wgsl(chain(WGSL_EXPRESSION + 1)).starts_with("error[SW0702]: an expression"));
         assert_eq!(wgsl(chain(WGSL_EXPRESSION)), "");
         assert_eq!(wgsl(format!("fn f() {{ {} }}", "if a {} else {} ".repeat(2000))), "");
+        assert_eq!(wgsl("const a = f(1+1, b[1+1]);".repeat(WGSL_EXPRESSION)), "");
         assert_eq!(wgsl(format!("const t = array({});", "-1.5, ".repeat(5000))), "");
     }
 
@@ -255,7 +256,16 @@ mod tests {
     #[test]
     fn declarations() {
         assert_eq!(wgsl("const a=b;".repeat(WGSL_DECLARATIONS)), "");
-        assert!(wgsl("const a=b;".repeat(WGSL_DECLARATIONS + 1)).starts_with("error[SW0706]: too many declarations"));
+        let expected = "\
+error[SW0706]: too many declarations in one file
+     --> m.wgsl:4097:10
+     |
+4097 | const a=b;
+     |          ^ one too many
+     |
+     = at most 4096 are taken
+";
+        assert_eq!(wgsl("const a=b;\n".repeat(WGSL_DECLARATIONS + 1)), expected);
     }
 
     proptest! {

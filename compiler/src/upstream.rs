@@ -7,6 +7,10 @@ use crate::diagnostics::Diagnostic;
 /// Stack of the thread on which naga works: its parser and writers recurse as deep as [`crate::limits`] lets expressions nest.
 const STACK: usize = 256 << 20;
 
+/// Name of that thread. Rust's default panic hook prints what panics there; a program that wants only the diagnostic installs a hook
+/// that passes over threads of this name.
+pub const THREAD: &str = "shadewright-naga";
+
 /// Runs work of naga's on a large stack and turns a panic in it into a diagnostic with this code.
 ///
 /// # Errors
@@ -18,7 +22,10 @@ pub fn guarded<T: Send>(code: &'static str, what: &str, work: impl FnOnce() -> T
         caught()
     } else {
         std::thread::scope(|scope| {
-            let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, caught);
+            let thread = std::thread::Builder::new()
+                .name(THREAD.to_owned())
+                .stack_size(STACK)
+                .spawn_scoped(scope, caught);
             match thread.map(std::thread::ScopedJoinHandle::join) {
                 Ok(Ok(result)) => result,
                 Ok(Err(panic)) => Err(panic),

@@ -32,12 +32,17 @@ fn one(found: &Diagnostic, config: &Config) -> String {
     let mut files = SimpleFiles::new();
     let mut known: Vec<&Arc<SourceFile>> = Vec::new();
     let mut labels = Vec::with_capacity(found.labels.len());
+    let mut notes = Vec::with_capacity(found.notes.len());
     for (index, label) in found.labels.iter().enumerate() {
+        let range = clamp(&label.file.text, &label.span);
+        if has_long_line(&label.file.text, &range) {
+            notes.push(visible(&format!("{}: {}", label.file.place(range.start), label.text)).into_owned());
+            continue;
+        }
         let id = known.iter().position(|file| **file == label.file).unwrap_or_else(|| {
             known.push(&label.file);
             files.add(visible(&label.file.name), visible(&label.file.text))
         });
-        let range = clamp(&label.file.text, &label.span);
         let place = if index == 0 {
             diagnostic::Label::primary(id, range)
         } else {
@@ -45,13 +50,24 @@ fn one(found: &Diagnostic, config: &Config) -> String {
         };
         labels.push(place.with_message(visible(&label.text)));
     }
+    notes.extend(found.notes.iter().map(|note| visible(note).into_owned()));
     let rendered = diagnostic::Diagnostic::error()
         .with_code(found.code)
         .with_message(visible(&found.message))
         .with_labels(labels)
-        .with_notes(found.notes.iter().map(|note| visible(note).into_owned()).collect());
+        .with_notes(notes);
     // Clamped ranges of files that are there leave nothing to fail; should it yet happen, the message still comes through.
     term::emit_into_string(config, &files, &rendered).unwrap_or_else(|_| format!("error[{}]: {}\n", found.code, visible(&found.message)))
+}
+
+/// Longest line that is shown, in bytes. A place on a longer one is told by its line and column alone.
+const LONGEST_LINE: usize = 2000;
+
+/// Whether one of the lines that the range touches is too long to be shown.
+fn has_long_line(text: &str, range: &Range<usize>) -> bool {
+    let start = text[..range.start].rfind('\n').map_or(0, |newline| newline + 1);
+    let end = text[range.end..].find('\n').map_or(text.len(), |newline| range.end + newline);
+    text[start..end].split('\n').any(|line| line.len() > LONGEST_LINE)
 }
 
 /// Text whose control characters cannot act on a terminal. Every character keeps its length, so that spans stay right.
@@ -164,6 +180,17 @@ error[SW0201]: there is no module `micro`
         let text = Report::from(Diagnostic::new("SW0201", "no `\u{1b}[2J`").at(&file, 0..1, "here")).render();
         assert!(!text.contains('\u{1b}') && !text.contains('\r'), "{text:?}");
         assert!(text.contains("a?[31m?b"), "{text}");
+    }
+
+    /// Catches a line of a megabyte that is printed whole.
+    #[test]
+    fn very_long_lines_are_not_shown() {
+        let long = SourceFile::new("long.ron", format!("a\n{}\nb", "(".repeat(LONGEST_LINE + 1)));
+        let short = SourceFile::new("short.ron", "(".repeat(LONGEST_LINE));
+        let report = |file, span| Report::from(Diagnostic::new("SW0101", "m").at(file, span, "here").note("advice")).render();
+        assert_eq!(report(&long, 100..101), "error[SW0101]: m\n = long.ron:2:99: here\n = advice\n");
+        assert_eq!(report(&long, 0..100), "error[SW0101]: m\n = long.ron:1:1: here\n = advice\n");
+        assert!(report(&long, 0..1).contains("1 | a") && report(&short, 0..1).contains("1 | (((("));
     }
 
     proptest! {

@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 
 use naga::back::msl;
-use naga::{AddressSpace, ImageClass, Module, ResourceBinding, StorageAccess, TypeInner};
+use naga::{AddressSpace, ImageClass, Module, ResourceBinding, TypeInner};
 
 /// Kinds of resources that are counted apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Uniform,
-    Storage { writable: bool },
+    Storage,
     Texture,
-    StorageTexture { writable: bool },
+    StorageTexture,
     Sampler,
     Other,
 }
@@ -31,15 +31,11 @@ fn resources(module: &Module) -> BTreeMap<ResourceBinding, Kind> {
             let kind = match (inner, global.space) {
                 (TypeInner::Sampler { .. }, _) => Kind::Sampler,
                 (TypeInner::Image { class, .. }, _) => match class {
-                    ImageClass::Storage { access, .. } => Kind::StorageTexture {
-                        writable: access.contains(StorageAccess::STORE),
-                    },
+                    ImageClass::Storage { .. } => Kind::StorageTexture,
                     _ => Kind::Texture,
                 },
                 (_, AddressSpace::Uniform) => Kind::Uniform,
-                (_, AddressSpace::Storage { access }) => Kind::Storage {
-                    writable: access.contains(StorageAccess::STORE),
-                },
+                (_, AddressSpace::Storage { .. }) => Kind::Storage,
                 _ => Kind::Other,
             };
             (binding, kind)
@@ -54,10 +50,10 @@ pub(super) fn glsl(module: &Module) -> Option<BTreeMap<ResourceBinding, u8>> {
     for (binding, kind) in resources(module) {
         let class = match kind {
             Kind::Uniform => 0,
-            Kind::Storage { .. } => 1,
+            Kind::Storage => 1,
             // A sampler has no number of its own: GLSL fuses it with its texture.
             Kind::Texture | Kind::Sampler => 2,
-            Kind::StorageTexture { .. } => 3,
+            Kind::StorageTexture => 3,
             Kind::Other => 4,
         };
         let number = next.entry(class).or_insert(0u32);
@@ -82,16 +78,8 @@ pub(super) fn msl(module: &Module) -> Option<msl::EntryPointResourceMap> {
     for (binding, kind) in resources(module) {
         let mut target = msl::BindTarget::default();
         match kind {
-            Kind::Uniform | Kind::Other => target.buffer = Some(take(&mut buffers)?),
-            Kind::Storage { writable } => {
-                target.buffer = Some(take(&mut buffers)?);
-                target.mutable = writable;
-            }
-            Kind::Texture => target.texture = Some(take(&mut textures)?),
-            Kind::StorageTexture { writable } => {
-                target.texture = Some(take(&mut textures)?);
-                target.mutable = writable;
-            }
+            Kind::Uniform | Kind::Storage | Kind::Other => target.buffer = Some(take(&mut buffers)?),
+            Kind::Texture | Kind::StorageTexture => target.texture = Some(take(&mut textures)?),
             Kind::Sampler => target.sampler = Some(msl::BindSamplerTarget::Resource(take(&mut samplers)?)),
         }
         map.insert(binding, target);

@@ -3,7 +3,7 @@
 use naga::{Block, Expression, Function, FunctionArgument, FunctionResult, Handle, LocalVariable, Range, Span, Statement, SwitchCase};
 
 use super::ir::Linker;
-use crate::plan::{Choice, Planned, choice, is_dead_store, is_params, reachable, struct_of};
+use crate::plan::{Choice, Planned, can_go, choice, is_dead_store, is_params, reachable, struct_of};
 
 type Exprs = Vec<Option<Handle<Expression>>>;
 
@@ -181,6 +181,12 @@ impl Linker<'_> {
         clone.planned.calls.get(&function).and_then(|&index| self.functions[index]).unwrap_or(function)
     }
 
+    /// Whether a call stays although nobody reads its result.
+    fn is_kept(&self, clone: &Clone, callee: Handle<Function>) -> bool {
+        !can_go(&self.plan.functions, clone.planned, &self.plan.homes[clone.home].unit, callee)
+            && clone.planned.calls.contains_key(&callee)
+    }
+
     /// The block for a use of `params`: all parameters of one home are in one group.
     fn params_block(&mut self, clone: &Clone, global: Handle<naga::GlobalVariable>) -> Handle<naga::GlobalVariable> {
         let plan = self.plan;
@@ -269,6 +275,12 @@ impl Linker<'_> {
                 });
             }
             Statement::Store { pointer, .. } if is_dead_store(clone.home, &plan.structs, clone.source, clone.info, ir, *pointer) => return None,
+            // A call that can go, and whose result nobody reads.
+            Statement::Call { function, result, .. }
+                if result.is_none_or(|r| clone.exprs[r.index()].is_none()) && !self.is_kept(clone, *function) =>
+            {
+                return None;
+            }
             other => other.clone(),
         };
         match &mut patched {

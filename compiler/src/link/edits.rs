@@ -4,12 +4,12 @@
 
 use std::ops::Range;
 
-use naga::{Block, Span, Statement};
+use naga::{Block, Handle, Span, Statement};
 
-use crate::parse::Origin;
+use crate::parse::{Origin, Unit};
 use crate::parse::lex::{Kind, Token};
 use crate::parse::scan::{Item, closing};
-use crate::plan::{Choice, Plan, Planned, choice, is_dead_store, leaves, reachable};
+use crate::plan::{Choice, Plan, Planned, can_go, choice, is_dead_store, leaves, reachable};
 
 /// A stretch of text and what stands there instead.
 pub type Edit = (Range<usize>, String);
@@ -83,8 +83,25 @@ impl Dead<'_> {
                     }
                 }
             }
+            Statement::Call { function: callee, result, .. } => {
+                let unread = result.is_none_or(|r| !self.planned.live[r.index()]);
+                if unread && !self.is_kept(*callee) {
+                    self.call_statement(unit, span, *callee);
+                }
+            }
             _ => {}
         }
+    }
+
+    /// A call that is a statement of its own goes with its semicolon; others go with the statement around them.
+    fn call_statement(&mut self, unit: &Unit, span: Span, callee: Handle<naga::Function>) -> Option<()> {
+        let first = self.token_at(span)?;
+        let name = unit.ir.functions[callee].name.as_deref()?;
+        let before = self.tokens.get(first.checked_sub(1)?)?;
+        if self.word(first) == name && (before.is(b';') || before.is(b'{') || before.is(b'}')) {
+            self.remove_statement(first);
+        }
+        Some(())
     }
 
     /// The token at the start of a span, if it is inside this function's body.
@@ -322,7 +339,13 @@ impl Dead<'_> {
         }
         let acts = ["atomic", "subgroup", "quad", "workgroupUniformLoad", "ray"].iter().any(|p| word.starts_with(p));
         let unit = &self.plan.homes[self.planned.home].unit;
-        acts || unit.functions.contains_key(word)
+        acts || unit.functions.get(word).is_some_and(|&f| self.is_kept(f))
+    }
+
+    /// Whether a call of this function stays, whoever reads its result.
+    fn is_kept(&self, callee: Handle<naga::Function>) -> bool {
+        let unit = &self.plan.homes[self.planned.home].unit;
+        self.planned.calls.contains_key(&callee) && !can_go(&self.plan.functions, self.planned, unit, callee)
     }
 
     /// Whether the name declared at `name` is mentioned in living text elsewhere.

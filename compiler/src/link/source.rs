@@ -156,8 +156,9 @@ impl Writer<'_> {
                 Some((ItemKind::Struct, crate::parse::fields_struct(&emitted, &unit.needs.instances)))
             }
             Some(Origin::Instances) => {
-                self.want(home, "Instance");
-                let ty = plan.names.get(&(home, "Instance".to_owned()))?;
+                let declared = plan.shared_home(home);
+                self.want(declared, "Instance");
+                let ty = plan.names.get(&(declared, "Instance".to_owned()))?;
                 Some((ItemKind::Variable, format!("{}var<storage, read> {emitted}: array<{ty}>;\n", self.binding(home, name)?)))
             }
             Some(Origin::Own) => {
@@ -336,7 +337,7 @@ impl Writer<'_> {
                 (if own { home } else { plan.shared_home(home) }, true)
             }
             Origin::Interface(category) => (plan.interface_home(category)?, true),
-            Origin::Instances => (home, true),
+            Origin::Instances => (if name == "Instance" { plan.shared_home(home) } else { home }, true),
             Origin::Slot { .. } | Origin::Offered { .. } | Origin::Params | Origin::Param(_) => (home, false),
         };
         if is_item {

@@ -220,7 +220,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::manifest::{Filling, Value};
+    use crate::manifest::{Filling, Value, check_category, check_module};
 
     fn module(text: &str) -> String {
         parse_module("module.ron", text).map_or_else(|report| report.render(), |_| "accepted".to_owned())
@@ -457,20 +457,31 @@ error[SW0105]: `a` stands twice
         assert_eq!(manifest.resources["a"].group, Some(0));
     }
 
-    /// Catches an interface of the repository that no longer loads.
+    /// Catches a manifest of the repository that no longer loads, or says something that cannot be.
     #[test]
-    fn the_repository_s_categories() {
+    fn the_repository_s_manifests() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../modules");
-        let mut count = 0;
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path().join("category.ron");
+        let folders = |path: &std::path::Path| {
+            let entries = std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path());
+            entries.filter(|path| path.is_dir()).collect::<Vec<_>>()
+        };
+        let (mut categories, mut modules, mut errors) = (0, 0, String::new());
+        for category in folders(&folder) {
+            let path = category.join("category.ron");
             let Ok(text) = std::fs::read_to_string(&path) else { continue };
-            parse_category(&path.display().to_string(), &text)
-                .map_err(|report| report.render())
-                .unwrap();
-            count += 1;
+            let checked = parse_category(&path.display().to_string(), &text).and_then(|parsed| check_category(&parsed));
+            errors += &checked.map_or_else(|report| report.render(), |()| String::new());
+            categories += 1;
+            for module in folders(&category) {
+                let path = module.join("module.ron");
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                let checked = parse_module(&path.display().to_string(), &text).and_then(|parsed| check_module(&parsed));
+                errors += &checked.map_or_else(|report| report.render(), |()| String::new());
+                modules += 1;
+            }
         }
-        assert!(count > 10);
+        assert!(errors.is_empty(), "{errors}");
+        assert!(categories > 10 && modules > 10, "{categories} {modules}");
     }
 
     fn nodes() -> impl Strategy<Value = Node> {
@@ -533,7 +544,8 @@ error[SW0105]: `a` stands twice
         fn any_near_miss_is_judged(at in 0..VALID.len(), length in 0..12usize, put in "[(){}\\[\\],:\"'/*#r\\\\ a1.é-]{0,3}") {
             let (at, end) = (VALID.floor_char_boundary(at), VALID.floor_char_boundary((at + length).min(VALID.len())));
             let text = format!("{}{put}{}", &VALID[..at], &VALID[end.max(at)..]);
-            if let Err(report) = parse_module("m", &text) {
+            let judged = parse_module("m", &text).and_then(|parsed| check_module(&parsed));
+            if let Err(report) = judged {
                 prop_assert!(report.render().starts_with("error[SW01"));
                 for label in &report.diagnostics[0].labels {
                     prop_assert!(text.get(label.span.clone()).is_some(), "{:?} in {}", label, text);

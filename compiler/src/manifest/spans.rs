@@ -343,8 +343,10 @@ fn string(text: &str) -> (Token, usize) {
             '\\' => escaped = true,
             '"' => {
                 let quoted = &text[..=index];
+                let plain = &quoted[1..quoted.len() - 1];
                 // ron undoes the escapes; names rarely have any.
-                let content = ron::from_str::<String>(quoted).unwrap_or_else(|_| quoted[1..quoted.len() - 1].to_owned());
+                let escaped = plain.contains('\\').then(|| ron::from_str::<String>(quoted));
+                let content = escaped.and_then(Result::ok).unwrap_or_else(|| plain.to_owned());
                 return (Token::Atom(content), index + 1);
             }
             _ => {}

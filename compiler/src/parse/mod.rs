@@ -7,5 +7,5 @@ pub mod scan;
 mod unit;
 
 pub use checks::same_signature;
-pub use compose::{Composed, Interface, Needs, Origin, SlotNeed, compose, constant_name, fields_struct, param_uses, typed_wgsl, wgsl_type};
-pub use unit::{StructKey, Unit, chain, check_interface, parse_unit};
+pub use compose::{Interface, Needs, Origin, SlotNeed, compose, constant_name, fields_struct, param_uses, typed_wgsl, wgsl_type};
+pub use unit::{StructKey, Unit, chain, check_interface, parse_unit, parse_whole};

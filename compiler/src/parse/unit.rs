@@ -7,7 +7,7 @@ use std::sync::Arc;
 use naga::{Handle, TypeInner};
 
 use super::checks;
-use super::compose::{Composed, Interface, Needs, Origin};
+use super::compose::{Composed, Interface, Needs, Origin, compose};
 use super::scan::Scan;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::upstream::guarded;
@@ -72,6 +72,22 @@ pub fn parse_unit(
     interface: Option<String>,
 ) -> Result<Unit, Report> {
     checks::before_parsing(&file, &scan, interface.is_some())?;
+    let unit = index(file, scan, composed, needs, interface)?;
+    checks::after_parsing(&unit)?;
+    Ok(unit)
+}
+
+/// Parses WGSL that is complete in itself, such as a linked shader: every name is its own.
+///
+/// # Errors
+/// The text is no WGSL, or has a type error.
+pub fn parse_whole(file: Arc<SourceFile>) -> Result<Unit, Report> {
+    let scan = super::scan::scan(&file.text);
+    let composed = compose(&file, &scan, &Needs::default(), &|_| Err(Diagnostic::new(codes::UNKNOWN_INTERFACE, "none here").into()))?;
+    index(file, scan, composed, Needs::default(), None)
+}
+
+fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, interface: Option<String>) -> Result<Unit, Report> {
     let (ir, info) = parse_and_validate(&file, &composed)?;
     let functions: HashMap<_, _> = ir.functions.iter().filter_map(|(h, f)| Some((f.name.clone()?, h))).collect();
     let structs = named_structs(&ir, &composed);
@@ -90,7 +106,6 @@ pub fn parse_unit(
     };
     unit.fixed_structs = fixed_structs(&unit);
     unit.dependent = dependents(&unit);
-    checks::after_parsing(&unit)?;
     Ok(unit)
 }
 

@@ -82,8 +82,9 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
                 continue;
             }
             let bound = !matches!(global.space, AddressSpace::Private | AddressSpace::WorkGroup);
-            let mut binding = None;
-            if bound {
+            // Only a text that is complete in itself brings bindings.
+            let mut binding = global.binding.as_ref().map(|b| (b.group, b.binding));
+            if bound && binding.is_none() {
                 let group = group_of(catalog, plan, home, handle)?;
                 let number = &mut next[group as usize];
                 binding = Some((group, *number));

@@ -3,11 +3,11 @@
 //! A store into a member that nobody reads is dead, and so is what only it needed; a vertex stage's outputs are alive
 //! where the fragment stage reads them. The analysis starts with no member alive and repeats until nothing is added.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use naga::{Binding, Block, Expression, Handle, ShaderStage, Statement, Type, TypeInner};
 
-use super::{Body, Choice, Home, Plan, Planned, Structs, choice, reachable};
+use super::{Body, Choice, Home, Plan, Planned, Structs, choice, pure::can_go, reachable};
 
 /// Finds out what is alive and writes it into the plan.
 pub fn analyse(plan: &mut Plan) {
@@ -17,17 +17,52 @@ pub fn analyse(plan: &mut Plan) {
             break;
         }
     }
+    drop_unneeded(plan);
+}
+
+/// Takes out the functions that only dead calls reached, and says of the others who calls them first.
+fn drop_unneeded(plan: &mut Plan) {
+    let mut index = Vec::with_capacity(plan.functions.len());
+    let mut kept = 0;
+    for planned in &plan.functions {
+        index.push(kept);
+        kept += usize::from(planned.needed);
+    }
+    let needed: Vec<bool> = plan.functions.iter().map(|f| f.needed).collect();
+    plan.functions.retain(|f| f.needed);
+    for caller in 0..plan.functions.len() {
+        let planned = &mut plan.functions[caller];
+        planned.calls.retain(|_, id| needed[*id]);
+        planned.calls.values_mut().chain(&mut planned.targets).for_each(|id| *id = index[*id]);
+        let mut callees: Vec<usize> = planned.calls.values().chain(&planned.targets).copied().collect();
+        callees.sort_unstable();
+        for callee in callees {
+            plan.functions[callee].caller.get_or_insert(caller);
+        }
+    }
 }
 
 fn settle(plan: &mut Plan) {
     loop {
         let mut changed = false;
-        for index in 0..plan.functions.len() {
+        // Callers first: a function is looked at once something alive calls it.
+        for index in (0..plan.functions.len()).rev() {
+            if !plan.functions[index].needed {
+                continue;
+            }
+            if plan.functions[index].ir(&plan.homes).is_none() {
+                for target in plan.functions[index].targets.clone() {
+                    changed |= !std::mem::replace(&mut plan.functions[target].needed, true);
+                }
+            }
             let Some(function) = plan.functions[index].ir(&plan.homes) else { continue };
             let Some(info) = plan.functions[index].info(&plan.homes) else { continue };
             let mut walker = Walker {
                 homes: &plan.homes,
+                functions: &plan.functions,
                 planned: &plan.functions[index],
+                pure_calls: HashMap::new(),
+                called: Vec::new(),
                 function,
                 info,
                 structs: &mut plan.structs,
@@ -40,7 +75,11 @@ fn settle(plan: &mut Plan) {
             walker.keep_lets_with_calls();
             walker.block(&function.body);
             changed |= walker.changed;
-            plan.functions[index].live = walker.live;
+            let (live, called) = (walker.live, walker.called);
+            plan.functions[index].live = live;
+            for callee in called {
+                changed |= !std::mem::replace(&mut plan.functions[callee].needed, true);
+            }
         }
         changed |= link_stages(plan);
         if !changed {
@@ -94,7 +133,7 @@ fn bound_members(plan: &Plan, home: usize, ty: Handle<Type>) -> Vec<(usize, u32,
 /// WGSL has no empty structs: one that is used keeps a member, a built-in value rather than a location.
 fn keep_one_member(plan: &mut Plan) -> bool {
     let mut used = HashSet::new();
-    for planned in &plan.functions {
+    for planned in plan.functions.iter().filter(|f| f.needed) {
         let unit = &plan.homes[planned.home].unit;
         let Some(function) = planned.ir(&plan.homes) else { continue };
         let types = function.arguments.iter().map(|a| a.ty).chain(function.result.iter().map(|r| r.ty));
@@ -136,7 +175,12 @@ fn used_structs(structs: &Structs, ir: &naga::Module, home: usize, ty: Handle<Ty
 
 struct Walker<'a> {
     homes: &'a [Home],
+    functions: &'a [Planned],
     planned: &'a Planned,
+    /// Calls of pure functions by their result: they are alive where that is.
+    pure_calls: HashMap<Handle<Expression>, (Handle<naga::Function>, &'a [Handle<Expression>])>,
+    /// Functions that living calls reach.
+    called: Vec<usize>,
     function: &'a naga::Function,
     info: &'a naga::valid::FunctionInfo,
     structs: &'a mut Structs,
@@ -149,32 +193,44 @@ struct Walker<'a> {
     changed: bool,
 }
 
-impl Walker<'_> {
-    /// A call may do more than give a value, so a `let` with a call in it stays, whoever reads it.
+impl<'a> Walker<'a> {
+    /// Something that acts beside giving a value stays where it stands, and so does the `let` around it, whoever reads it.
     fn keep_lets_with_calls(&mut self) {
         for &named in self.function.named_expressions.keys() {
-            if self.holds_call(named) {
+            if self.holds_action(named) {
                 self.read(named);
             }
         }
     }
 
-    fn holds_call(&self, handle: Handle<Expression>) -> bool {
-        // A call inside a `let` has its result inside the initialiser's span.
+    /// Whether the text of an expression holds a call that cannot go, an atomic operation or the like.
+    fn holds_action(&self, handle: Handle<Expression>) -> bool {
         let span = self.function.expressions.get_span(handle).to_range().unwrap_or_default();
         self.function.expressions.iter().take(handle.index() + 1).any(|(h, e)| {
             let inside = || self.function.expressions.get_span(h).to_range().is_some_and(|s| span.start <= s.start && s.end <= span.end);
-            is_result(e) && inside()
+            let acts = match e {
+                Expression::CallResult(callee) => !self.can_go(*callee),
+                other => is_result(other),
+            };
+            acts && inside()
         })
     }
 
-    fn block(&mut self, block: &Block) {
+    fn can_go(&self, callee: Handle<naga::Function>) -> bool {
+        can_go(self.functions, self.planned, &self.homes[self.planned.home].unit, callee)
+    }
+
+    fn call(&mut self, callee: Handle<naga::Function>) {
+        self.called.extend(self.planned.calls.get(&callee));
+    }
+
+    fn block(&mut self, block: &'a Block) {
         for (statement, _) in reachable(&self.homes[self.planned.home].unit.ir, self.function, block) {
             self.statement(statement);
         }
     }
 
-    fn statement(&mut self, statement: &Statement) {
+    fn statement(&mut self, statement: &'a Statement) {
         match statement {
             Statement::Emit(_)
             | Statement::Break
@@ -203,12 +259,25 @@ impl Walker<'_> {
             }
             Statement::Return { value } => value.iter().for_each(|&v| self.read(v)),
             Statement::Store { pointer, value } => {
-                if !is_dead_store(self.planned.home, self.structs, self.function, self.info, &self.homes[self.planned.home].unit.ir, *pointer) {
-                    self.address(*pointer);
-                    self.read(*value);
+                let ir = &self.homes[self.planned.home].unit.ir;
+                if is_dead_store(self.planned.home, self.structs, self.function, self.info, ir, *pointer) {
+                    if !self.holds_action(*value) {
+                        return;
+                    }
+                    self.enliven_path(*pointer);
                 }
+                self.address(*pointer);
+                self.read(*value);
             }
-            Statement::Call { arguments, result, .. } => {
+            Statement::Call { function, arguments, result } => {
+                if self.can_go(*function) {
+                    // Alive where its result is read, which is after this.
+                    if let Some(result) = result {
+                        self.pure_calls.insert(*result, (*function, arguments));
+                    }
+                    return;
+                }
+                self.call(*function);
                 arguments.iter().for_each(|&a| self.read(a));
                 result.iter().for_each(|&r| self.read(r));
             }
@@ -231,6 +300,23 @@ impl Walker<'_> {
                     return;
                 }
                 // A pointer from elsewhere: an argument, a variable of the module.
+                _ => return,
+            }
+        }
+    }
+
+    /// All members on the way of a pointer.
+    fn enliven_path(&mut self, mut pointer: Handle<Expression>) {
+        loop {
+            match self.function.expressions[pointer] {
+                Expression::AccessIndex { base, index } => {
+                    let ir = &self.homes[self.planned.home].unit.ir;
+                    if let Some(id) = struct_of(self.planned.home, self.structs, self.info, ir, base) {
+                        self.changed |= self.structs.enliven(id, index);
+                    }
+                    pointer = base;
+                }
+                Expression::Access { base, .. } => pointer = base,
                 _ => return,
             }
         }
@@ -267,9 +353,20 @@ impl Walker<'_> {
             Expression::Compose { ty, components } => {
                 let id = self.structs.id(home, *ty);
                 for (index, &component) in components.iter().enumerate() {
-                    if id.is_none_or(|id| self.structs.is_live(id, index as u32)) {
-                        self.stack.push(component);
+                    let dead = id.filter(|&id| !self.structs.is_live(id, index as u32));
+                    if let Some(id) = dead {
+                        if !self.holds_action(component) {
+                            continue;
+                        }
+                        self.changed |= self.structs.enliven(id, index as u32);
                     }
+                    self.stack.push(component);
+                }
+            }
+            Expression::CallResult(_) => {
+                if let Some((callee, arguments)) = self.pure_calls.remove(&handle) {
+                    self.call(callee);
+                    self.stack.extend(arguments);
                 }
             }
             other => expression_operands(other, &mut |h| self.stack.push(h)),

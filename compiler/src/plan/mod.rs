@@ -6,6 +6,7 @@ mod bindings;
 mod branches;
 mod live;
 mod names;
+mod pure;
 mod reach;
 mod structs;
 
@@ -18,10 +19,11 @@ use crate::manifest::Combine;
 use crate::parse::Unit;
 use crate::resolve::{Instances, Tree};
 
-pub use bindings::{Block, BlockMember, GROUPS, PlannedGlobal, declared, declaring, is_instances, is_params};
+pub use bindings::{Block, GROUPS, PlannedGlobal, declared, declaring, is_instances, is_params};
 pub use branches::{Choice, choice, leaves, reachable};
 pub use live::{is_dead_store, struct_of};
 pub use names::joined;
+pub use pure::can_go;
 pub use reach::{Roots, plan};
 pub use structs::Structs;
 
@@ -75,6 +77,10 @@ pub struct Planned {
     pub caller: Option<usize>,
     /// Which expressions are alive.
     pub live: Vec<bool>,
+    /// Whether it does nothing but give a value, so that a call without readers can go.
+    pub pure: bool,
+    /// Whether an entry point still reaches it when calls without readers are gone.
+    pub needed: bool,
     /// Name in the emitted text.
     pub name: String,
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use naga::{Block, Handle, Statement};
 
-use super::{Body, Choice, Home, Plan, Planned, Structs, bindings, choice, live, names, reachable};
+use super::{Body, Choice, Home, Plan, Planned, Structs, bindings, choice, live, names, pure::is_pure, reachable};
 use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::Combine;
@@ -87,7 +87,8 @@ impl Reach<'_> {
             let instance = &self.instances.list[index];
             let node = &self.tree.nodes[instance.node];
             let unit = self.catalog.unit(&node.module, &node.constants)?;
-            let prefix = instance.name.clone();
+            // What the compiler makes itself needs no telling apart.
+            let prefix = if node.module.category.is_empty() { String::new() } else { instance.name.clone() };
             self.push_home(unit, Some(index), prefix);
         }
         // Every interface that a unit names.
@@ -143,7 +144,7 @@ impl Reach<'_> {
             // The root of a tree runs its stages; a module further in is only asked for one of its passes.
             if wanted.is_none_or(|w| *w == entry.name) {
                 found = true;
-                self.visit((home, Body::Entry(index)), None)?;
+                self.visit((home, Body::Entry(index)))?;
             }
         }
         if found {
@@ -160,7 +161,7 @@ impl Reach<'_> {
         Err(diagnostic.into())
     }
 
-    fn visit(&mut self, target: Target, caller: Option<usize>) -> Result<usize, Report> {
+    fn visit(&mut self, target: Target) -> Result<usize, Report> {
         if let Some(&done) = self.memo.get(&target) {
             return Ok(done);
         }
@@ -171,10 +172,12 @@ impl Reach<'_> {
         let (home, body) = target.clone();
         let mut calls = HashMap::new();
         let mut targets = Vec::new();
+        let mut pure = true;
         if let Body::Combined { slot, function, .. } = &body {
             for next in self.list_targets(home, slot, function)? {
-                targets.push(self.visit(next, None)?);
+                targets.push(self.visit(next)?);
             }
+            pure = targets.iter().all(|&t| self.functions[t].pure);
         } else {
             let unit = Arc::clone(&self.homes[home].unit);
             let function = match body {
@@ -187,18 +190,16 @@ impl Reach<'_> {
             for handle in called {
                 if !calls.contains_key(&handle) {
                     let next = self.call(home, handle)?;
-                    let id = self.visit(next, None)?;
+                    let id = self.visit(next)?;
                     calls.insert(handle, id);
                 }
             }
+            pure = is_pure(&unit, function, &|f| calls.get(&f).is_none_or(|&id: &usize| self.functions[id].pure));
         }
         self.stack.pop();
         let id = self.functions.len();
-        for &callee in calls.values().chain(&targets) {
-            // Callees are finished before their callers: whoever asks first is the reason why.
-            self.functions[callee].caller.get_or_insert(id);
-        }
-        self.functions.push(Planned { home, body, calls, targets, caller, live: Vec::new(), name: String::new() });
+        let needed = matches!(body, Body::Entry(_));
+        self.functions.push(Planned { home, body, calls, targets, caller: None, live: Vec::new(), pure, needed, name: String::new() });
         self.memo.insert(target, id);
         Ok(id)
     }

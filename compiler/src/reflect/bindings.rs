@@ -180,7 +180,7 @@ mod tests {
             return Colours(through(sampled, smooth_sampler, in.b) * lit, texel * params.a.x);
         }
         @compute @workgroup_size(8, 4) fn cs() { written[0] = read_only[0]; textureStore(out, vec3i(0), vec4f(1.0)); }
-        @fragment fn plain() -> @location(0) vec4f { return vec4f(1.0); }
+        @fragment fn plain() -> @location(0) vec4f { return vec4f(params.a, 1.0); }
     ";
 
     /// Catches each kind of resource that is taken for another, above all float textures that are only loaded, and sampling

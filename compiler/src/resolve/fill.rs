@@ -110,6 +110,8 @@ impl Resolver<'_> {
     ) -> Result<Vec<usize>, Report> {
         let by_recipe = node.fill.get(name);
         let (filling, at) = match (by_recipe, &slot.default) {
+            // A module that the compiler made stands around the recipe: what fills it is the recipe's own root.
+            (Some(filling), _) if module.category.is_empty() => (filling.clone(), place.clone()),
             (Some(filling), _) => (filling.clone(), place.keys(&["fill", name])),
             (None, Some(default)) => {
                 let at = Place::new(&module.source).keys(&["slots", name, "default"]);
@@ -155,7 +157,9 @@ impl Resolver<'_> {
         let mut filled = Vec::with_capacity(nodes.len());
         for (index, child) in nodes.iter().enumerate() {
             let at = if many { at.then(Way::Index(index)) } else { at.clone() };
-            let path = if slot.arity == Arity::List { format!("{path}.{name}[{index}]") } else { format!("{path}.{name}") };
+            let path = if module.category.is_empty() {
+                path.to_owned()
+            } else if slot.arity == Arity::List { format!("{path}.{name}[{index}]") } else { format!("{path}.{name}") };
             let module = self.catalog.module_at(&child.module, Some((&slot.interface, name)), &at)?;
             filled.push(self.node(module, child, Some(owner), path, at, depth + 1)?);
         }
