@@ -7,7 +7,8 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
-    env_logger::init();
+    // Errors are told by exit status and message; what drivers log on their way there is for whoever sets RUST_LOG.
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("off")).init();
     let arguments = cli::Arguments::parse();
     let format = arguments.format;
     cli::failure::finish(format, || cli::run(arguments))
