@@ -232,6 +232,9 @@ impl Renderer {
             if !draw.model.is_finite() {
                 return Err(DataError::new(format!("draws[{i}].model"), "is not finite"));
             }
+            if !(draw.bounds.min.is_finite() && draw.bounds.max.is_finite()) {
+                return Err(DataError::new(format!("draws[{i}].bounds"), "is not finite"));
+            }
             *seen |= draw.visible || draw.casts_shadow;
         }
         if !frame.camera.view_projection().is_finite() {
@@ -663,6 +666,8 @@ mod tests {
         ];
         let mut renderer = renderer(&gpu());
         let frame = frame(draws);
+        renderer.prepare(&frame).unwrap();
+        assert_eq!(renderer.pipeline_counts().misses, 4, "scene, blended, mirrored, display");
         let targets = renderer.render(&frame).unwrap();
         let hdr = targets.read_hdr(&gpu()).unwrap();
         assert_eq!(texel(&hdr, -2.5, 2.5), [-2.5, 10.5, -1.0, 0.25], "the nearer one, first row on top");
@@ -673,7 +678,7 @@ mod tests {
         assert_eq!(mix[..3], [0.25 * -2.5 + 0.75 * 0.5, 0.25 * 5.5, 0.25 * 3.0]);
         let display = targets.read_display(&gpu()).unwrap().unwrap();
         assert_eq!(display[(8 + 6) * 4..][..4], [32, 134, 13, 255]);
-        assert_eq!(renderer.pipeline_counts().misses, 4, "scene, blended, mirrored, display");
+        assert_eq!(renderer.pipeline_counts().misses, 4, "all was there");
         let again = renderer.render(&frame).unwrap();
         assert_eq!(again.read_hdr(&gpu()).unwrap(), hdr);
         assert_eq!(renderer.pipeline_counts().misses, 4);
@@ -691,6 +696,8 @@ mod tests {
         };
         assert_eq!(fail(&|f| f.draws[0].material = 3), "draws[0].material: material 3 of 1");
         assert_eq!(fail(&|f| f.draws[0].model.x_axis.x = f32::NAN), "draws[0].model: is not finite");
+        assert_eq!(fail(&|f| f.draws[0].bounds.max.y = f32::INFINITY), "draws[0].bounds: is not finite");
+        assert_eq!(fail(&|f| f.camera.view.x_axis.x = f32::NAN), "camera: is not finite");
         assert!(fail(&|f| f.size = [0, 4]).starts_with("size: 0 x 4 texels"));
         assert!(fail(&|f| f.size = [4_000_000, 4]).starts_with("size: 4000000 x 4 texels"));
         let with = |positions: usize, indices: Vec<u32>| {
@@ -707,6 +714,14 @@ mod tests {
         assert_eq!(
             fail(&|f| f.draws[0].mesh = with(3, vec![0, 1])),
             "draws[0].mesh: 2 indices are no triangles"
+        );
+        let uneven = Mesh {
+            normals: vec![[0.0; 3]; 2],
+            ..Mesh::clone(&mesh)
+        };
+        assert_eq!(
+            fail(&|f| f.draws[0].mesh = Arc::new(uneven.clone())),
+            "draws[0].mesh: 2 normals for 4 vertices"
         );
         let mut textured = frame(vec![draw(&mesh, Mat4::IDENTITY)]);
         textured.materials = vec![material("textured")];
