@@ -10,6 +10,7 @@ use shadewright_compiler::manifest::{Filling, Node, Value};
 use shadewright_compiler::{Catalog, Recipe};
 use shadewright_runtime::frame::{Bounds, Camera, Draw, Frame, Lights, Material, Mesh, Renderer, Settings, Texture};
 use shadewright_runtime::gpu::Gpu;
+use shadewright_runtime::scene::SceneFile;
 
 static GPU: LazyLock<Gpu> = LazyLock::new(|| Gpu::headless().unwrap());
 static CATALOG: LazyLock<Arc<Catalog>> = LazyLock::new(|| Arc::new(Catalog::load(shadewright_modules::library()).unwrap()));
@@ -147,6 +148,22 @@ fn lambert_plane_under_a_point_light_is_the_closed_form() {
     }
 }
 
+/// Catches normals that are carried by the model matrix itself: a stretched object is not lit by its stretched normal.
+#[test]
+fn normals_of_a_stretched_object_are_perpendicular_to_it() {
+    let material = material(r#"(module: "forward", fill: {"brdf": "lambert", "lights": ["directional"]})"#);
+    let lights = lights(&material, vec![vec![sun(Vec3::NEG_Y, 100.0)]]);
+    let model = Mat4::from_scale(Vec3::new(1.0, 3.0, 1.0)) * Mat4::from_rotation_z(0.5);
+    let normal = model.transform_vector3(Vec3::Z).cross(model.transform_vector3(Vec3::X)).normalize();
+    let tilted = Draw {
+        model,
+        ..draw(&square(2.0), Vec3::ZERO)
+    };
+    let found = texel(&hdr(&frame(material, lights, vec![tilted])), 0.1, 0.1)[0];
+    let expected = 0.8 / std::f32::consts::PI * 100.0 * normal.y;
+    assert!((found / expected - 1.0).abs() < 1e-4, "{found}, not {expected}");
+}
+
 /// Share of a square tile's edge distance at which a ground point's ray toward a light passes the tile's plane: below 1 it hits.
 fn passes_tile(ground: Vec3, toward: Vec3, tile: Vec3, half: f32) -> f32 {
     let at = ground + toward * (tile.y / toward.y) - tile;
@@ -253,6 +270,30 @@ fn textures_belong_to_their_place() {
     // These texels lie a 32nd of a texture's texel beside its centre, so the other half shows a little.
     assert!((top[0] - 2.0).abs() < 0.04 && top[1] < 0.04, "{top:?}");
     assert!((bottom[1] - 2.0 * 0.502_886_5).abs() < 0.04 && bottom[0] < 0.04, "{bottom:?}");
+}
+
+/// Catches an example that does not draw, and NaN or infinity in what it draws.
+#[test]
+fn examples_draw() {
+    let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/scenes");
+    let mut drawn = 0;
+    for entry in std::fs::read_dir(scenes).unwrap() {
+        let path = entry.unwrap().path();
+        if path.to_str().is_some_and(|p| p.ends_with(".scene.ron")) {
+            let scene = SceneFile::read(&path).unwrap_or_else(|e| panic!("{e}"));
+            let frame = scene.frame(&CATALOG, Some([96, 64])).unwrap_or_else(|e| panic!("{e}"));
+            let mut renderer = Renderer::new(&GPU, Arc::clone(&CATALOG));
+            let targets = renderer.render(&frame).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+            let image = targets.read_hdr(&GPU).unwrap();
+            assert!(image.iter().flatten().all(|v| v.is_finite()), "{}: NaN or infinite", path.display());
+            let lit = image.iter().filter(|t| t[..3].iter().any(|c| *c > 0.0)).count();
+            assert!(lit > image.len() / 10, "{}: {lit} lit texels", path.display());
+            let display = targets.read_display(&GPU).unwrap().unwrap();
+            assert!(display.chunks(4).any(|t| t[1] > 64), "{}: dark", path.display());
+            drawn += 1;
+        }
+    }
+    assert!(drawn > 0);
 }
 
 /// Catches lights that are linked without being given, which would read an empty buffer.

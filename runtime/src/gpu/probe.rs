@@ -359,6 +359,7 @@ mod tests {
         params: {
             \"scale\": (type: F32, default: 1.0, range: Some((0.0, 10.0))),
             \"other\": (type: F32, default: 1.0),
+            \"gain\": (type: F32, default: 1.0, mode: Override),
             \"fixed\": (type: U32, default: 1, mode: Constant),
         },
         instances: {\"power\": (type: F32, default: 0.25), \"gone\": (type: F32, default: 0.0)},
@@ -370,7 +371,7 @@ mod tests {
             var sum = 0.0;
             for (var l = 0u; l < arrayLength(&instances); l++) { sum += instances[l].power; }
             let white = textureLoad(tint, vec2u(0u), 0).x;
-            return s.n * s.alpha * params.scale + v * f32(k * params.fixed) + vec3f(sum * white, 0.0, 1.0 / v.z);
+            return s.n * s.alpha * params.scale + v * f32(k * params.fixed) + vec3f(sum * white, params.gain * f32(arrayLength(&instances)), 1.0 / v.z);
         }";
 
     fn run(inputs: &[Json]) -> Result<Vec<Json>, RuntimeError> {
@@ -393,10 +394,10 @@ mod tests {
         let rows = [
             json!({"s": {"n": [2, 4, 8], "unread": [1, 2]}, "v": [0, 0, 1], "k": 0}),
             json!({"s": {"n": [2, 4, 8], "alpha": 1}, "v": [1, 2, 4], "k": 3, "params": {"scale": 2}}),
-            json!({"v": [1, 2, 0], "k": 1, "instances": [{"power": 1}, {"power": 2}, {"gone": 7}], "params": {"other": 1}}),
-            json!({"s": {"n": [0, 0, 1]}, "v": [0, 0, -1], "k": 0, "params": {"lamp.scale": 4}}),
+            json!({"v": [1, 2, 0], "k": 1, "instances": [{"power": 1}, {"power": 2}, {"gone": 7}], "params": {"other": 1, "gain": -2}}),
+            json!({"s": {"n": [0, 0, 2]}, "v": [0, 0, -1], "k": 0, "params": {"lamp.scale": 4}}),
         ];
-        let expected = json!([[1.25, 2.0, 5.0], [7.25, 14.0, 28.25], [4.25, 2.0, "Infinity"], [0.25, 0.0, 1.0]]);
+        let expected = json!([[1.25, 3.0, 5.0], [7.25, 15.0, 28.25], [4.25, -4.0, "Infinity"], [0.25, 1.0, 3.0]]);
         assert_eq!(Json::Array(run(&rows).unwrap()), expected);
     }
 
