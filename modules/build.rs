@@ -50,7 +50,11 @@ fn collect(root: &Path, folder: &Path, files: &mut Vec<(String, PathBuf)>) -> Re
         let path = entry?.path();
         let text = path.extension().is_some_and(|e| e == "ron" || e == "wgsl" || e == "md");
         if path.is_file() && text {
-            let parts: Vec<_> = path.strip_prefix(root)?.components().map(|c| c.as_os_str().to_string_lossy().into_owned()).collect();
+            let parts: Vec<_> = path
+                .strip_prefix(root)?
+                .components()
+                .map(|c| c.as_os_str().to_string_lossy().into_owned())
+                .collect();
             files.push((parts.join("/"), path));
         }
     }

@@ -22,12 +22,19 @@ impl Library for Embedded {
             "" => Some(path),
             _ => path.strip_prefix(folder)?.strip_prefix('/'),
         };
-        let names: BTreeSet<&str> = FILES.iter().filter_map(|(path, _)| below(path)?.split_once('/')).map(|(name, _)| name).collect();
+        let names: BTreeSet<&str> = FILES
+            .iter()
+            .filter_map(|(path, _)| below(path)?.split_once('/'))
+            .map(|(name, _)| name)
+            .collect();
         names.into_iter().map(str::to_owned).collect()
     }
 
     fn read(&self, path: &str) -> Result<Option<String>, String> {
-        Ok(FILES.binary_search_by_key(&path, |(name, _)| name).ok().map(|i| FILES[i].1.to_owned()))
+        Ok(FILES
+            .binary_search_by_key(&path, |(name, _)| name)
+            .ok()
+            .map(|i| FILES[i].1.to_owned()))
     }
 }
 
@@ -39,7 +46,10 @@ mod tests {
     #[test]
     fn folders_are_categories_then_modules() {
         let categories = Embedded.folders("");
-        assert!(categories.contains(&"ndf".to_owned()) && categories.contains(&"pass".to_owned()), "{categories:?}");
+        assert!(
+            categories.contains(&"ndf".to_owned()) && categories.contains(&"pass".to_owned()),
+            "{categories:?}"
+        );
         assert!(!categories.contains(&"src".to_owned()));
         assert!(Embedded.folders("ndf").contains(&"ggx".to_owned()));
         assert_eq!(Embedded.folders("ndf/ggx"), Vec::<String>::new());

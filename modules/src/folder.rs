@@ -53,8 +53,11 @@ impl Library for Folder {
         let Ok(entries) = fs::read_dir(place) else {
             return Vec::new();
         };
-        let mut names: Vec<String> =
-            entries.filter_map(Result::ok).filter(|e| e.path().is_dir()).filter_map(|e| e.file_name().into_string().ok()).collect();
+        let mut names: Vec<String> = entries
+            .filter_map(Result::ok)
+            .filter(|e| e.path().is_dir())
+            .filter_map(|e| e.file_name().into_string().ok())
+            .collect();
         names.sort();
         names
     }
@@ -69,7 +72,11 @@ impl Library for Folder {
             return Ok(None);
         }
         if about.len() > MAX_BYTES {
-            return Err(format!("{}: {} bytes, more than the {MAX_BYTES} that a file may have", place.display(), about.len()));
+            return Err(format!(
+                "{}: {} bytes, more than the {MAX_BYTES} that a file may have",
+                place.display(),
+                about.len()
+            ));
         }
         fs::read_to_string(&place).map(Some).map_err(said)
     }

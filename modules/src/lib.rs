@@ -34,3 +34,17 @@ pub use overlay::Overlay;
 pub fn library() -> Arc<dyn Library> {
     Arc::new(Embedded)
 }
+
+#[cfg(test)]
+mod tests {
+    use shadewright_compiler::Catalog;
+
+    /// Catches manifests that say something that cannot be, such as a default outside its range or a slot of no category.
+    #[test]
+    fn the_compiler_takes_every_manifest() {
+        let catalog = Catalog::load(super::library()).map_err(|report| report.render());
+        let catalog = catalog.unwrap_or_else(|report| panic!("{report}"));
+        let folders = super::Embedded.files().filter(|(path, _)| path.ends_with("/module.ron")).count();
+        assert_eq!(catalog.modules().count(), folders);
+    }
+}

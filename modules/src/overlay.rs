@@ -43,7 +43,10 @@ mod tests {
         let both = Overlay(vec![Arc::new(Folder::new(base.path())), library()]);
 
         let names = both.folders("ndf");
-        assert!(names.contains(&"mine".to_owned()) && names.iter().filter(|n| *n == "ggx").count() == 1, "{names:?}");
+        assert!(
+            names.contains(&"mine".to_owned()) && names.iter().filter(|n| *n == "ggx").count() == 1,
+            "{names:?}"
+        );
         assert!(both.folders("").contains(&"brdf".to_owned()));
         assert_eq!(both.read("ndf/ggx/module.ron"), Ok(Some("(summary: \"mine\")".to_owned())));
         assert_eq!(both.read("brdf/category.ron"), library().read("brdf/category.ron"));

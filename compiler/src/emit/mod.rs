@@ -1,7 +1,7 @@
 //! A validated module written in the languages that naga writes.
 //!
 //! Bindings keep their WGSL group and number where the language has both (SPIR-V: set and binding; HLSL: space and register).
-//! The others number resources of one kind (see [`slots`]) from 0, in the order of group and binding.
+//! The others number resources of one kind from 0, in the order of group and binding.
 
 mod slots;
 

@@ -13,8 +13,12 @@ fn only(text: &str) -> Case {
 
 #[test]
 fn reads_structs_vectors_and_numbers() {
-    let case = only(r#"[(function: "f", inputs: {"s": {"alpha": 0.25, "normal": (0, 0, 1)}, "h": (0.0, 0.0, 1.0), "x": 2}, expect: 1, relative: 1e-5)]"#);
-    let Input::Struct(s) = &case.inputs["s"] else { panic!("{:?}", case.inputs) };
+    let case = only(
+        r#"[(function: "f", inputs: {"s": {"alpha": 0.25, "normal": (0, 0, 1)}, "h": (0.0, 0.0, 1.0), "x": 2}, expect: 1, relative: 1e-5)]"#,
+    );
+    let Input::Struct(s) = &case.inputs["s"] else {
+        panic!("{:?}", case.inputs)
+    };
     assert_eq!(s["alpha"], Value::Number(0.25));
     assert_eq!(s["normal"], Value::List(vec![0.0, 0.0, 1.0]));
     assert_eq!(case.inputs["h"], Input::Value(Value::List(vec![0.0, 0.0, 1.0])));
@@ -68,7 +72,11 @@ fn every_module_is_complete() {
         assert!(read("README.md").starts_with(&format!("# {name}\n")), "{module}");
         let cases = parse(&read("cases.ron")).unwrap_or_else(|e| panic!("{module}/cases.ron: {e}"));
         for case in &cases {
-            assert!(!case.source.is_empty(), "{module}/cases.ron: `{}` does not say where its value is from", case.function);
+            assert!(
+                !case.source.is_empty(),
+                "{module}/cases.ron: `{}` does not say where its value is from",
+                case.function
+            );
         }
     }
 }

@@ -54,11 +54,6 @@ impl Programs {
         made.into_iter().collect()
     }
 
-    #[cfg(test)]
-    pub fn insert(&self, root: &Node, pass: &str, program: Program) {
-        lock(&self.made).insert((text_of(root), pass.to_owned()), Arc::new(program));
-    }
-
     /// The module that a node names, in a slot of this interface.
     pub fn module(&self, node: &Node, interface: Option<&str>) -> Option<&Arc<Module>> {
         interface

@@ -545,49 +545,44 @@ fn draw_calls(mut pass: wgpu::RenderPass, calls: &[Call]) {
 mod tests {
     use super::*;
     use crate::frame::{Bounds, Camera, Material, Mesh, Settings};
-    use crate::gpu::testing::{gpu, program};
+    use crate::gpu::testing::{catalog, gpu};
     use glam::{Mat4, Vec3};
-
-    struct Nothing;
-
-    impl shadewright_compiler::Library for Nothing {
-        fn folders(&self, _: &str) -> Vec<String> {
-            Vec::new()
-        }
-        fn read(&self, _: &str) -> Result<Option<String>, String> {
-            Ok(None)
-        }
-    }
 
     /// Writes the object's own position into the frame, with the opacity .25; members of `Frame` and `Object` are partly left out.
     const FORWARD: &str = "
-        struct Frame { view_projection: mat4x4<f32>, size: vec2<f32> }
-        struct Object { model: mat4x4<f32> }
-        @group(0) @binding(0) var<uniform> frame: Frame;
-        @group(3) @binding(0) var<storage, read> objects: array<Object>;
-        struct Out { @builtin(position) clip: vec4<f32>, @location(0) @interpolate(flat) place: vec3<f32> }
-        @vertex fn v(@location(0) position: vec3<f32>, @builtin(instance_index) i: u32) -> Out {
-            let model = objects[i].model;
-            return Out(frame.view_projection * model * vec4(position, 1.0), model[3].xyz + vec3(0.0, frame.size.x, 0.0));
+        struct In { @builtin(instance_index) object: u32, @location(0) position: vec3f }
+        struct Out { @builtin(position) clip: vec4f, @location(0) @interpolate(flat) place: vec3f }
+        struct Color { @location(0) color: vec4f }
+        @vertex fn vertex_main(in: In) -> Out {
+            let model = objects[in.object].model;
+            return Out(frame.view_projection * model * vec4f(in.position, 1.0), model[3].xyz + vec3f(0.0, frame.size.x, 0.0));
         }
-        @fragment fn f(@location(0) @interpolate(flat) place: vec3<f32>) -> @location(0) vec4<f32> { return vec4(place, 0.25); }";
+        @fragment fn fragment_main(in: Out) -> Color { return Color(vec4f(in.place, 0.25)); }";
 
     const DISPLAY_PASS: &str = "
-        @group(3) @binding(0) var hdr: texture_2d<f32>;
-        @vertex fn v(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
-            return vec4(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+        struct In { @builtin(vertex_index) i: u32 }
+        struct At { @builtin(position) at: vec4f }
+        struct Color { @location(0) color: vec4f }
+        @vertex fn vertex_main(in: In) -> At {
+            return At(vec4f(f32(in.i & 1u) * 4.0 - 1.0, f32(in.i >> 1u) * 4.0 - 1.0, 0.0, 1.0));
         }
-        @fragment fn f(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
-            return vec4(textureLoad(hdr, vec2<u32>(at.xy), 0).rgb / 20.0, 1.0);
+        @fragment fn fragment_main(in: At) -> Color {
+            return Color(vec4f(textureLoad(hdr, vec2u(in.at.xy), 0).rgb / 20.0, 1.0));
         }";
 
     fn renderer(gpu: &Gpu) -> Renderer {
-        let renderer = Renderer::new(gpu, Arc::new(Catalog::load(Arc::new(Nothing)).unwrap()));
-        renderer.programs.insert(&Node::new("forward"), "main", program(FORWARD, |_| None));
-        renderer
-            .programs
-            .insert(&Node::new("display"), "main", program(DISPLAY_PASS, |_| None));
-        renderer
+        let textured = FORWARD
+            .replace("position: vec3f }", "position: vec3f, @location(3) uv: vec2f }")
+            .replace("in.position,", "in.position + in.uv.xxx,");
+        let catalog = catalog(&[
+            ("pass/flat/module.ron", "(summary: \"tested\")"),
+            ("pass/flat/flat.wgsl", FORWARD),
+            ("pass/show/module.ron", "(summary: \"tested\", uses: [\"post\"])"),
+            ("pass/show/show.wgsl", DISPLAY_PASS),
+            ("pass/textured/module.ron", "(summary: \"tested\")"),
+            ("pass/textured/textured.wgsl", &textured),
+        ]);
+        Renderer::new(gpu, catalog)
     }
 
     fn material(recipe: &str) -> Material {
@@ -632,10 +627,10 @@ mod tests {
             size: [8, 8],
             time: 0.0,
             background: Vec3::new(0.5, 0.0, 0.0),
-            materials: vec![material("forward")],
+            materials: vec![material("flat")],
             draws,
             lights: vec![],
-            display: Some(material("display")),
+            display: Some(material("show")),
         }
     }
 
@@ -712,17 +707,6 @@ mod tests {
         assert_eq!(
             fail(&|f| f.draws[0].mesh = with(3, vec![0, 1])),
             "draws[0].mesh: 2 indices are no triangles"
-        );
-        renderer.programs.insert(
-            &Node::new("textured"),
-            "main",
-            program(
-                &FORWARD.replace(
-                    "@location(0) position: vec3<f32>",
-                    "@location(0) position: vec3<f32>, @location(3) uv: vec2<f32>",
-                ),
-                |_| None,
-            ),
         );
         let mut textured = frame(vec![draw(&mesh, Mat4::IDENTITY)]);
         textured.materials = vec![material("textured")];

@@ -70,10 +70,13 @@ struct Key<S> {
     state: S,
 }
 
+/// A value that is made once.
+type Cell<V> = Arc<Mutex<Option<Arc<V>>>>;
+
 /// A map whose values are made at most once each; threads that want the same one wait for the first.
 #[derive(Debug)]
 struct Kept<K, V> {
-    cells: Mutex<HashMap<K, Arc<Mutex<Option<Arc<V>>>>>>,
+    cells: Mutex<HashMap<K, Cell<V>>>,
     hits: AtomicUsize,
     misses: AtomicUsize,
 }
@@ -346,11 +349,14 @@ fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOpti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::testing::{gpu, program};
+    use crate::gpu::testing::{gpu, pass};
 
     const FLAT: &str = "
-        @vertex fn v(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> { return vec4(position, 1.0); }
-        @fragment fn f() -> @location(0) vec4<f32> { return vec4(1.0); }";
+        struct In { @location(0) position: vec3f }
+        struct Out { @builtin(position) clip: vec4f }
+        struct Color { @location(0) color: vec4f }
+        @vertex fn v(in: In) -> Out { return Out(vec4f(in.position, 1.0)); }
+        @fragment fn f() -> Color { return Color(vec4f(0.75)); }";
 
     fn state() -> RenderState {
         RenderState {
@@ -367,11 +373,8 @@ mod tests {
     #[test]
     fn equal_requests_share_one_pipeline() {
         let pipelines = Pipelines::new(&gpu());
-        let (a, same, other) = (
-            program(FLAT, |_| None),
-            program(FLAT, |_| None),
-            program(&FLAT.replace("(1.0)", "(0.5)"), |_| None),
-        );
+        let (a, same) = (pass(FLAT), pass(&FLAT.replace("Color", "Named")));
+        let other = pass(&FLAT.replace("0.75", "0.5"));
         let request = |program, state| RenderRequest {
             program,
             state,
@@ -396,11 +399,7 @@ mod tests {
     #[test]
     fn invalid_pipeline_is_a_typed_error() {
         let pipelines = Pipelines::new(&gpu());
-        let wrong = program(
-            "@vertex fn v() -> @builtin(position) vec4<f32> { return vec4(0.0); }
-            @fragment fn f() -> @location(0) u32 { return 1u; }",
-            |_| None,
-        );
+        let wrong = pass(&FLAT.replace("color: vec4f", "color: vec4u").replace("vec4f(0.75)", "vec4u(1u)"));
         let request = RenderRequest {
             program: &wrong,
             state: state(),
@@ -423,10 +422,7 @@ mod tests {
     #[test]
     fn vertex_input_of_another_type_is_refused() {
         let pipelines = Pipelines::new(&gpu());
-        let wrong = program(
-            &FLAT.replace("@location(0) position: vec3<f32>", "@location(3) position: vec3<f32>"),
-            |_| None,
-        );
+        let wrong = pass(&FLAT.replace("@location(0) position", "@location(3) position"));
         let error = pipelines.render(&RenderRequest {
             program: &wrong,
             state: state(),

@@ -348,75 +348,42 @@ pub(crate) fn fields_of<'a>(reflection: &'a Reflection, instance: &str) -> &'a I
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::testing::{gpu, param, program};
-    use shadewright_compiler::reflect::Instance;
+    use crate::gpu::testing::{catalog, gpu};
 
+    const CATEGORY: &str = "(summary: \"tested\", order: 1, group: 2, defaults: {\"S\": {\"alpha\": 0.5}})";
+    const INTERFACE: &str = "
+        struct S { n: vec3f, alpha: f32, unread: vec2f }
+        fn eval(s: S, v: vec3f, k: u32) -> vec3f { return vec3f(0.0); }";
+    const MANIFEST: &str = "(
+        summary: \"tested\",
+        params: {
+            \"scale\": (type: F32, default: 1.0, range: Some((0.0, 10.0))),
+            \"other\": (type: F32, default: 1.0),
+            \"fixed\": (type: U32, default: 1, mode: Constant),
+        },
+        instances: {\"power\": (type: F32, default: 0.25), \"gone\": (type: F32, default: 0.0)},
+        resources: {\"tint\": (kind: Texture())},
+    )";
     const SOURCE: &str = "
-        struct S { n: vec3<f32>, alpha: f32 }
-        struct Params { scale: f32 }
-        struct Lamp { color: vec3<f32>, power: f32 }
-        struct ProbeInput { s: S, v: vec3<f32>, k: u32 }
-        struct ProbeOutput { value: vec3<f32> }
-        @group(2) @binding(0) var<uniform> params: Params;
-        @group(1) @binding(0) var<storage, read> lamps: array<Lamp>;
-        @group(2) @binding(1) var tint: texture_2d<f32>;
-        @group(3) @binding(0) var<storage, read> inputs: array<ProbeInput>;
-        @group(3) @binding(1) var<storage, read_write> outputs: array<ProbeOutput>;
-        @compute @workgroup_size(64) fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
-            if id.x >= arrayLength(&outputs) { return; }
-            let i = inputs[id.x];
+        var tint: texture_2d<f32>;
+        fn eval(s: S, v: vec3f, k: u32) -> vec3f {
             var sum = 0.0;
-            for (var l = 0u; l < arrayLength(&lamps); l++) { sum += lamps[l].power; }
-            let tint = textureLoad(tint, vec2<u32>(0u), 0).x;
-            outputs[id.x].value = i.s.n * i.s.alpha * params.scale + i.v * f32(i.k) + vec3(sum * tint, 0.0, 1.0 / i.v.z);
+            for (var l = 0u; l < arrayLength(&instances); l++) { sum += instances[l].power; }
+            let white = textureLoad(tint, vec2u(0u), 0).x;
+            return s.n * s.alpha * params.scale + v * f32(k * params.fixed) + vec3f(sum * white, 0.0, 1.0 / v.z);
         }";
 
-    fn probe_program() -> Program {
-        let fill = |name: &str| match name {
-            "params" => Some(Fill::Params),
-            "lamps" => Some(Fill::Instances { instance: "lamp".into() }),
-            _ => None,
-        };
-        let program = program(SOURCE, fill);
-        let mut reflection = program.reflection().clone();
-        let declared = param(Value::Number(1.0));
-        reflection.params.push(ParamUse {
-            instance: "m".into(),
-            module: "m".into(),
-            name: "scale".into(),
-            ty: declared.ty,
-            place: ParamPlace::Uniform {
-                group: 2,
-                binding: 0,
-                offset: 0,
-                member: "scale".into(),
-            },
-            declared,
-        });
-        reflection.instances.push(Instance {
-            name: "lamp".into(),
-            module: "lamp".into(),
-            category: "light".into(),
-            paths: vec!["main".into()],
-            fields: IndexMap::from([
-                ("power".into(), param(Value::Number(0.25))),
-                ("gone".into(), param(Value::Number(0.0))),
-            ]),
-        });
-        Program::from_parts(
-            shadewright_compiler::validate::validate(program.validated().module().clone()).unwrap(),
-            reflection,
-            program.hash(),
-            String::new(),
-        )
-    }
-
     fn run(inputs: &[Json]) -> Result<Vec<Json>, RuntimeError> {
-        let names = Names {
-            defaults: IndexMap::from([("S".to_owned(), IndexMap::from([("alpha".to_owned(), Value::Number(0.5))]))]),
-            unread: vec![("m".into(), "other".into())],
-        };
-        evaluate(&Pipelines::new(&gpu()), &gpu(), &probe_program(), &names, inputs)
+        let catalog = catalog(&[
+            ("tested/category.ron", CATEGORY),
+            ("tested/interface.wgsl", INTERFACE),
+            ("tested/lamp/module.ron", MANIFEST),
+            ("tested/lamp/lamp.wgsl", SOURCE),
+        ]);
+        let recipe = Recipe::parse("test", "\"lamp\"").unwrap();
+        let answer = probe(&gpu(), &catalog, &recipe, "eval", inputs)?;
+        assert_eq!((&answer["function"], &answer["device"]), (&json!("eval"), &json!(gpu().name())));
+        Ok(answer["results"].as_array().unwrap().clone())
     }
 
     /// Catches lost order between batches, defaults and parameters that do not arrive, a padded instance buffer
@@ -424,10 +391,10 @@ mod tests {
     #[test]
     fn rows_come_back_in_order() {
         let rows = [
-            json!({"s": {"n": [2, 4, 8]}, "v": [0, 0, 1], "k": 0}),
+            json!({"s": {"n": [2, 4, 8], "unread": [1, 2]}, "v": [0, 0, 1], "k": 0}),
             json!({"s": {"n": [2, 4, 8], "alpha": 1}, "v": [1, 2, 4], "k": 3, "params": {"scale": 2}}),
             json!({"v": [1, 2, 0], "k": 1, "instances": [{"power": 1}, {"power": 2}, {"gone": 7}], "params": {"other": 1}}),
-            json!({"s": {"n": [0, 0, 1]}, "v": [0, 0, -1], "k": 0, "params": {"m.scale": 4}}),
+            json!({"s": {"n": [0, 0, 1]}, "v": [0, 0, -1], "k": 0, "params": {"lamp.scale": 4}}),
         ];
         let expected = json!([[1.25, 2.0, 5.0], [7.25, 14.0, 28.25], [4.25, 2.0, "Infinity"], [0.25, 0.0, 1.0]]);
         assert_eq!(Json::Array(run(&rows).unwrap()), expected);
@@ -462,7 +429,15 @@ mod tests {
         );
         assert_eq!(
             fail(json!({"v": [0, 0, 1], "k": 0, "params": {"scale": [1, 2]}})),
-            "m.scale: expected a number, found 2 numbers"
+            "lamp.scale: expected a number, found 2 numbers"
+        );
+        assert_eq!(
+            fail(json!({"v": [0, 0, 1], "k": 0, "params": {"scale": 11}})),
+            "lamp.scale: 11 is outside 0 to 10"
+        );
+        assert_eq!(
+            fail(json!({"v": [0, 0, 1], "k": 0, "params": {"fixed": 2}})),
+            "[1].params.fixed: is a constant of this recipe; freeze it to another value there"
         );
         assert_eq!(
             fail(json!({"v": [0, 0, 1], "k": 0, "instances": [{"powr": 1}]})),

@@ -7,7 +7,7 @@ use shadewright_compiler::manifest::{Param, Value};
 use shadewright_compiler::reflect::{Binding, BindingType, Layout, ParamPlace, ParamUse, Reflection};
 
 use super::layout::{GROUPS, smallest_size, view_dimension};
-use super::pack::{put_numbers, size_with};
+use super::pack::{put_numbers, size_with, unknown};
 use super::pipeline::{Constants, Pipeline};
 use super::value::numbers;
 use super::{DataError, Gpu, GpuError, RuntimeError};
@@ -94,14 +94,8 @@ pub fn instance_rows(
     let members = layout.element.as_ref().map_or(&[][..], |element| &element.members);
     for (i, row) in rows.iter().enumerate() {
         let path = format!("{path}[{i}]");
-        for name in row.keys().filter(|name| !fields.contains_key(*name)) {
-            return Err(super::pack::unknown(
-                name,
-                "field",
-                "the instance",
-                fields.keys().map(String::as_str),
-                &path,
-            ));
+        if let Some(name) = row.keys().find(|name| !fields.contains_key(*name)) {
+            return Err(unknown(name, "field", "the instance", fields.keys().map(String::as_str), &path));
         }
         for (name, field) in fields {
             let path = format!("{path}.{name}");

@@ -1,10 +1,11 @@
-//! Programs from WGSL text for the unit tests of this crate, reflected without linking.
+//! Small libraries and the device that the unit tests of this crate share.
 
-use indexmap::IndexMap;
-use shadewright_compiler::manifest::{Param, ParamMode, ParamType, ResourceKind, Value};
-use shadewright_compiler::program::Program;
-use shadewright_compiler::reflect::{Binding, Fill, Layout, Layouts, Reflection, binding_type, entry_point, stages_using};
-use shadewright_compiler::validate::validate;
+use std::sync::Arc;
+
+use shadewright_compiler::catalog::Catalog;
+use shadewright_compiler::program::{Program, Recipe};
+use shadewright_compiler::reflect::{Layout, Layouts};
+use shadewright_compiler::{Library, naga};
 
 use super::Gpu;
 
@@ -14,13 +15,9 @@ pub fn gpu() -> Gpu {
     GPU.get_or_init(|| Gpu::headless().unwrap()).clone()
 }
 
-fn parse(source: &str) -> naga::Module {
-    naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)))
-}
-
 /// Layout of a global variable's type.
 pub fn layout_of(source: &str, global: &str) -> Layout {
-    let module = parse(source);
+    let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
     let (_, var) = module
         .global_variables
         .iter()
@@ -29,57 +26,36 @@ pub fn layout_of(source: &str, global: &str) -> Layout {
     Layouts::new(&module).unwrap().of(var.ty)
 }
 
-/// A validated program of this text. `fill` says what the host puts into a binding, by the variable's name;
-/// what it does not say is a host resource of that name.
-pub fn program(source: &str, fill: impl Fn(&str) -> Option<Fill>) -> Program {
-    let validated = validate(parse(source)).unwrap();
-    let (module, info) = (validated.module(), validated.info());
-    let layouts = Layouts::new(module).unwrap();
-    let binding = |(handle, var): (_, &naga::GlobalVariable)| {
-        let at = var.binding?;
-        let name = var.name.clone().unwrap();
-        Some(Binding {
-            group: at.group,
-            binding: at.binding,
-            stages: stages_using(module, info, handle),
-            ty: binding_type(module, info, &layouts, handle).unwrap(),
-            fill: fill(&name).unwrap_or_else(|| Fill::Resource {
-                instance: None,
-                resource: name.clone(),
-                declared: ResourceKind::Host(name.clone()),
-            }),
-            name,
-        })
-    };
-    let hash = source
-        .bytes()
-        .fold(0xcbf2_9ce4_8422_2325u128, |h, b| (h ^ u128::from(b)).wrapping_mul(0x0100_0000_01b3));
-    let reflection = Reflection {
-        version: 1,
-        hash: format!("{hash:032x}"),
-        pass: "main".into(),
-        entry_points: module.entry_points.iter().filter_map(|e| entry_point(module, e)).collect(),
-        bindings: module.global_variables.iter().filter_map(binding).collect(),
-        overrides: vec![],
-        params: vec![],
-        functions: vec![],
-        instances: vec![],
-        capabilities: vec![],
-        passes: vec![],
-    };
-    Program::from_parts(validated, reflection, hash, source.into())
+/// Files by path, from memory.
+struct Texts(Vec<(String, String)>);
+
+impl Library for Texts {
+    fn folders(&self, folder: &str) -> Vec<String> {
+        let prefix = if folder.is_empty() { String::new() } else { format!("{folder}/") };
+        let inside = self.0.iter().filter_map(|(path, _)| path.strip_prefix(&prefix)?.split_once('/'));
+        let mut folders: Vec<_> = inside.map(|(name, _)| name.to_owned()).collect();
+        folders.dedup();
+        folders
+    }
+
+    fn read(&self, path: &str) -> Result<Option<String>, String> {
+        Ok(self.0.iter().find(|(p, _)| p == path).map(|(_, text)| text.clone()))
+    }
 }
 
-/// A scalar parameter without a unit.
-pub fn param(default: Value) -> Param {
-    Param {
-        ty: ParamType::F32,
-        unit: "1".into(),
-        also: IndexMap::new(),
-        default,
-        range: None,
-        doc: String::new(),
-        mode: ParamMode::Uniform,
-        role: None,
-    }
+/// The standard library with these files before it.
+pub fn catalog(files: &[(&str, &str)]) -> Arc<Catalog> {
+    let texts = files.iter().map(|(path, text)| ((*path).to_owned(), (*text).to_owned())).collect();
+    let library = shadewright_modules::Overlay(vec![Arc::new(Texts(texts)), shadewright_modules::library()]);
+    Arc::new(Catalog::load(Arc::new(library)).unwrap_or_else(|e| panic!("{e}")))
+}
+
+/// Links a pass of which the WGSL is given, without slots.
+pub fn pass(wgsl: &str) -> Program {
+    let catalog = catalog(&[
+        ("pass/tested/module.ron", "(summary: \"tested\")"),
+        ("pass/tested/tested.wgsl", wgsl),
+    ]);
+    let recipe = Recipe::parse("test", "\"tested\"").unwrap();
+    catalog.compile(&recipe, "main").unwrap_or_else(|e| panic!("{e}"))
 }

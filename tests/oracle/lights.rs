@@ -1,0 +1,56 @@
+//! Illuminance from lights. Metres, candela, lux.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+/// A light with a position.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// m
+    pub position: DVec3,
+    /// cd
+    pub intensity: f64,
+    /// Where it has faded, m; 0 for never.
+    pub range: f64,
+    /// Nearer than this its illuminance does not grow, m.
+    pub size: f64,
+}
+
+/// Candela of a light that sends a flux in lumen alike into all directions.
+pub fn candela(lumen: f64) -> f64 {
+    lumen / (4.0 * PI)
+}
+
+/// The window that takes a light to 0 at its range. Karis 2013, eq. 9, numerator.
+pub fn window(distance: f64, range: f64) -> f64 {
+    if range == 0.0 {
+        return 1.0;
+    }
+    (1.0 - (distance / range).powi(4)).clamp(0.0, 1.0).powi(2)
+}
+
+/// Windowed falloff with 1 added to the squared distance: Karis 2013, eq. 9 as printed (in that engine's centimetres).
+pub fn falloff_karis(distance: f64, range: f64) -> f64 {
+    window(distance, range) / (distance * distance + 1.0)
+}
+
+/// Windowed inverse square, the distance kept from 0. Lagarde and de Rousiers 2014.
+pub fn falloff(distance: f64, range: f64, size: f64) -> f64 {
+    window(distance, range) / distance.max(size).powi(2)
+}
+
+/// Illuminance of a surface with unit normal `n` at `place`, lx.
+pub fn point_illuminance(light: &Point, place: DVec3, n: DVec3) -> f64 {
+    let r = light.position - place;
+    let d = r.length();
+    if d == 0.0 {
+        return 0.0;
+    }
+    light.intensity * falloff(d, light.range, light.size) * (n.dot(r) / d).max(0.0)
+}
+
+/// Illuminance of a surface with unit normal `n` by parallel rays that travel along `direction`, lx. Lambert 1760.
+pub fn directional_illuminance(direction: DVec3, illuminance: f64, n: DVec3) -> f64 {
+    illuminance * (-n.dot(direction) / direction.length()).max(0.0)
+}
