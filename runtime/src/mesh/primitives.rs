@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::gltf::{Asset, GltfError};
-use super::{Mesh, MeshError, generate_tangents, teapot};
+use super::{Mesh, MeshError, teapot};
 
 /// Most subdivisions along one direction.
 pub const MAX_SEGMENTS: u32 = 1024;
@@ -139,7 +139,7 @@ impl Shape {
             Self::Plane { size, segments } => {
                 let (x, z) = (length("size", size[0])?, length("size", size[1])?);
                 let (nx, nz) = (count("segments", segments[0], 1)?, count("segments", segments[1], 1)?);
-                grid(&mut mesh, nx, nz, |u, v| {
+                grid(&mut mesh, nx, nz, Vec3::X, |u, v| {
                     (Vec3::new((u - 0.5) * x, 0.0, (v - 0.5) * z), Vec3::Y, Vec2::new(u, v))
                 });
             }
@@ -149,7 +149,7 @@ impl Shape {
                     // Right and down on the face as seen from outside, up being +y on the four walls.
                     let down = if normal.y == 0.0 { -Vec3::Y } else { Vec3::Z * normal.y };
                     let right = normal.cross(down);
-                    grid(&mut mesh, 1, 1, |u, v| {
+                    grid(&mut mesh, 1, 1, right, |u, v| {
                         let at = normal + right * (2.0 * u - 1.0) + down * (2.0 * v - 1.0);
                         (at * half, normal, Vec2::new(u, v))
                     });
@@ -202,7 +202,6 @@ impl Shape {
                 });
             }
         }
-        generate_tangents(&mut mesh);
         Ok(mesh)
     }
 }
@@ -220,14 +219,15 @@ fn arc(turns: f32) -> Vec2 {
     }
 }
 
-/// A grid of quads whose u runs right and v runs down as seen from outside.
-fn grid(mesh: &mut Mesh, nu: u32, nv: u32, at: impl Fn(f32, f32) -> (Vec3, Vec3, Vec2)) {
+/// A flat grid of quads whose u runs along `right` and v runs down as seen from outside.
+fn grid(mesh: &mut Mesh, nu: u32, nv: u32, right: Vec3, at: impl Fn(f32, f32) -> (Vec3, Vec3, Vec2)) {
     let first = mesh.positions.len() as u32;
     for j in 0..=nv {
         for i in 0..=nu {
             let (position, normal, uv) = at(i as f32 / nu as f32, j as f32 / nv as f32);
             mesh.positions.push(position.to_array());
             mesh.normals.push(normal.to_array());
+            mesh.tangents.push(right.extend(1.0).to_array());
             mesh.uvs.push(uv.to_array());
         }
     }
@@ -257,6 +257,7 @@ fn turned(mesh: &mut Mesh, nu: u32, nv: u32, profile: impl Fn(f32) -> (Vec2, Vec
             let p = if on_axis { Vec2::new(0.0, p.y) } else { p };
             mesh.positions.push(place(p).to_array());
             mesh.normals.push(place(n).normalize_or(Vec3::Y).to_array());
+            mesh.tangents.push([-around.y, 0.0, -around.x, 1.0]);
             mesh.uvs.push([u, v]);
         }
     }
@@ -265,7 +266,12 @@ fn turned(mesh: &mut Mesh, nu: u32, nv: u32, profile: impl Fn(f32) -> (Vec2, Vec
             let a = first + j * (nu + 1) + i;
             let (b, c, d) = (a + 1, a + nu + 2, a + nu + 1);
             // On the axis each vertex serves the segment to its right: a for the top row, d for the bottom row.
-            for t in [[a, d, c], [a, c, b]] {
+            let triangles = if mesh.positions[d as usize] == mesh.positions[c as usize] {
+                [[a, d, b], [d, c, b]]
+            } else {
+                [[a, d, c], [a, c, b]]
+            };
+            for t in triangles {
                 push_triangle(mesh, t);
             }
         }
@@ -386,23 +392,51 @@ mod tests {
         assert!(plane.tangents.iter().all(|t| t[..3] == [1.0, 0.0, 0.0]));
     }
 
-    /// Catches one shared pole vertex, whose u would swirl the texture around the pole.
+    /// Catches one shared pole vertex, whose u would swirl the texture around the pole, and the neighbour's vertex at either pole.
     #[test]
     fn poles_have_a_vertex_for_each_segment() {
-        let mesh = Shape::Sphere {
+        let mesh = build(&Shape::Sphere {
             radius: 1.0,
             segments: 8,
             rings: 4,
-        }
-        .build(|_| unreachable!())
+        })
         .unwrap();
         assert_eq!(mesh.triangles(), 8 * 2 + 8 * 2 * 2);
-        let mut u: Vec<f32> = (0..mesh.positions.len())
-            .filter(|&i| mesh.positions[i][1] == 1.0)
-            .map(|i| mesh.uvs[i][0])
-            .collect();
-        u.sort_by(f32::total_cmp);
-        assert_eq!(u, (0..8).map(|i| (i as f32 + 0.5) / 8.0).collect::<Vec<_>>());
+        for pole in [1.0, -1.0] {
+            let mut seen = 0;
+            for t in mesh.indices.chunks_exact(3) {
+                let (at_pole, rest): (Vec<u32>, Vec<u32>) = t.iter().partition(|&&k| mesh.positions[k as usize][1] == pole);
+                let u = |k: u32| mesh.uvs[k as usize][0];
+                if let [tip] = at_pole[..] {
+                    assert!((u(tip) - (u(rest[0]) + u(rest[1])) / 2.0).abs() < 1e-6);
+                    seen += 1;
+                }
+            }
+            assert_eq!(seen, 8);
+        }
+    }
+
+    /// Catches tangents that are not those which a normal map's baker presumes.
+    #[test]
+    fn tangents_are_those_of_mikktspace() {
+        for (shape, ..) in all() {
+            let mesh = build(&shape).unwrap();
+            let mut other = mesh.clone();
+            crate::mesh::generate_tangents(&mut other);
+            let mut corners = 0;
+            for (&a, &b) in mesh.indices.iter().zip(&other.indices) {
+                let (ta, tb) = (mesh.tangents[a as usize], other.tangents[b as usize]);
+                // Near a pole the mean over the triangles' corners leaves the direction of the one vertex.
+                if Vec3::from_slice(&ta).dot(Vec3::from_slice(&tb)) > 0.99 && ta[3] == tb[3] {
+                    corners += 1;
+                }
+            }
+            assert!(
+                corners * 100 > mesh.indices.len() * 97,
+                "{shape:?}: {corners} of {}",
+                mesh.indices.len()
+            );
+        }
     }
 
     #[test]
