@@ -1,1 +1,37 @@
-//! x
+//! Shadewright composes shaders.
+//!
+//! A shading model is a tree of small WGSL modules: a pass with a material, a BRDF, lights; the BRDF with a distribution of
+//! normals, a masking function, a Fresnel term. Each module is one folder: `module.ron` declares it (slots, parameters with
+//! units, resources, passes it needs), one file of plain WGSL implements the interface of its category. A *recipe* names the
+//! modules of a tree and freezes some of their parameters. From there
+//!
+//! ```text
+//! RON -> Recipe -> parsed modules -> resolved tree -> link plan -> one naga module -> validated -> WGSL, SPIR-V, GLSL, HLSL, MSL
+//!                                                                                              -> reflection (JSON)
+//!                                                                                              -> a pipeline, a frame
+//! ```
+//!
+//! A choice is made by linking another function, never by an `if`: what a shader doesn't need is not in it. No function, type,
+//! binding, interpolant or parameter is there that the entry points don't reach.
+//!
+//! This crate is the facade over three, each of which knows only those before it:
+//!
+//! - [`compiler`]: declarations and WGSL to a validated module, its reflection and its text. No GPU, no files.
+//! - [`modules`]: the standard library, embedded.
+//! - [`runtime`]: wgpu. Scenes to recipes, pipelines, passes, and an HDR frame in physical units.
+//!
+//! ```
+//! use shadewright::compiler::{Catalog, Recipe};
+//!
+//! let catalog = Catalog::load(shadewright::modules::library())?;
+//! // A BRDF by itself has no entry points; a probe calls it over a table of inputs.
+//! let recipe = Recipe::parse("example", r#"(module: "microfacet", fill: {"ndf": "ggx"})"#)?;
+//! let program = catalog.compile_probe(&recipe, "brdf")?;
+//! assert!(program.wgsl().contains("fn brdf"));
+//! assert!(program.reflection().functions.iter().any(|function| function.module == "ggx"));
+//! # Ok::<(), shadewright::compiler::Report>(())
+//! ```
+
+pub use shadewright_compiler as compiler;
+pub use shadewright_modules as modules;
+pub use shadewright_runtime as runtime;

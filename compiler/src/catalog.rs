@@ -11,7 +11,7 @@ use crate::limits;
 use crate::manifest::{
     CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, check_category, check_module, parse_category, parse_module, typed,
 };
-use crate::parse::scan::scan;
+use crate::parse::scan::{Item, ItemKind, scan};
 use crate::parse::{Interface, Needs, SlotNeed, Unit, check_interface, compose, parse_unit};
 use crate::resolve::Place;
 
@@ -313,6 +313,23 @@ impl Catalog {
             )?;
         }
         Ok(unit)
+    }
+
+    /// The functions that a category's modules define, with comment, signature and neutral body as the interface has them;
+    /// none for categories of roots, whose modules have entry points of their own.
+    ///
+    /// # Errors
+    /// There is no such category, or its interface cannot be read.
+    pub fn functions(&self, category: &str) -> Result<IndexMap<String, String>, Report> {
+        let interface = self.interface(category)?;
+        let offers = &interface.category.manifest.offers;
+        let functions = interface
+            .scan
+            .items
+            .iter()
+            .filter(|item| item.kind == ItemKind::Function && !offers.contains(&item.name));
+        let text = |item: &Item| interface.file.text[item.doc_start..item.span.end].to_owned();
+        Ok(functions.map(|item| (item.name.clone(), text(item))).collect())
     }
 
     /// Checks a module alone: its manifest's references and its WGSL with every parameter as declared.

@@ -1,0 +1,57 @@
+//! Texts from files, arguments and standard input.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use shadewright::compiler::Recipe;
+
+use super::failure::Failure;
+
+/// Largest text that the command reads, in bytes; the compiler's own limits are below it. Keeps an endless pipe from filling the memory.
+const MAX_BYTES: u64 = 64 << 20;
+
+/// Text of a file, or of standard input for `-`.
+///
+/// # Errors
+/// It is not there, is too long, or is no UTF-8.
+pub fn text(path: &Path) -> Result<String, Failure> {
+    let name = path.display();
+    let wrong = |error: std::io::Error| Failure::message(format!("{name}: cannot be read: {error}"));
+    let mut bytes = Vec::new();
+    let read = if path == Path::new("-") {
+        std::io::stdin().lock().take(MAX_BYTES + 1).read_to_end(&mut bytes)
+    } else {
+        if path.is_dir() {
+            return Err(Failure::message(format!("{name}: is a folder, not a file")));
+        }
+        File::open(path).map_err(wrong)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)
+    };
+    read.map_err(wrong)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(Failure::message(format!("{name}: longer than {} MiB", MAX_BYTES >> 20)));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Failure::message(format!("{name}: is no UTF-8 text (byte {at})"))
+    })
+}
+
+/// A recipe as typed: `-`, an inline RON tree, a file, or a module's name.
+///
+/// # Errors
+/// The file cannot be read, or its text is no recipe.
+pub fn recipe(typed: &str) -> Result<Recipe, Failure> {
+    if typed == "-" {
+        return Ok(Recipe::parse("standard input", &text(Path::new("-"))?)?);
+    }
+    let inline = typed.trim_start().starts_with(['(', '"']);
+    let path = Path::new(typed);
+    if !inline && path.is_file() {
+        return Ok(Recipe::parse(typed, &text(path)?)?);
+    }
+    if !inline && (Path::new(typed).extension().is_some() || path.is_absolute() || typed.starts_with('.')) {
+        return Err(Failure::message(format!("{typed}: there is no such file")));
+    }
+    Ok(Recipe::parse("recipe", typed)?)
+}

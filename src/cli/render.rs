@@ -1,0 +1,129 @@
+//! `render`: a scene into a picture.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::{Args, ValueEnum};
+use shadewright::compiler::Recipe;
+use shadewright::compiler::manifest::Node;
+use shadewright::runtime::frame::Renderer;
+use shadewright::runtime::gpu::Gpu;
+use shadewright::runtime::image::{Hdr, encode_exr, encode_png};
+use shadewright::runtime::scene::SceneFile;
+
+use super::failure::Failure;
+use super::output::Outputs;
+use super::{Context, check, input};
+
+/// Options of `render`.
+#[derive(Args)]
+pub struct Options {
+    /// Scene (*.scene.ron), or - for standard input
+    scene: PathBuf,
+    /// Picture: *.png as displayed, *.exr the linear HDR frame in cd/m2
+    #[arg(short, value_name = "FILE")]
+    output: PathBuf,
+    /// Width and height in pixels, instead of the scene's own
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+    /// Change a value of the scene, such as `lights[0].fields.intensity=900 lm`
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// What is shown
+    #[arg(long, value_enum, default_value_t = View::Beauty)]
+    view: View,
+}
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum View {
+    /// The scene, lit
+    Beauty,
+}
+
+/// Kinds of files, by their names' ends.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Png,
+    Exr,
+}
+
+fn size(typed: &str) -> Result<[u32; 2], String> {
+    let sides = typed.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    sides.ok_or_else(|| "should be like 960x540".to_owned())
+}
+
+/// # Errors
+/// The scene is wrong, there is no GPU, or the file cannot be written.
+pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
+    let View::Beauty = options.view;
+    let extension = options.output.extension().and_then(|extension| extension.to_str());
+    let kind = match extension {
+        Some("png") => Kind::Png,
+        Some("exr") => Kind::Exr,
+        _ => {
+            let name = options.output.display();
+            return Err(Failure::Usage(format!("{name}: a picture's name ends in .png or .exr")));
+        }
+    };
+    let mut scene = read(&options.scene)?;
+    for typed in &options.set {
+        let Some((path, value)) = typed.split_once('=') else {
+            return Err(Failure::Usage(format!("--set {typed}: should be PATH=VALUE")));
+        };
+        scene = scene.set(path.trim(), value.trim())?;
+    }
+    let mut frame = scene.frame(&context.catalog, options.size)?;
+    match kind {
+        Kind::Exr => frame.display = None,
+        Kind::Png if frame.display.is_none() => {
+            return Err(Failure::message(
+                "the scene has no `display` pass, so there is only an HDR frame: name an .exr file",
+            ));
+        }
+        Kind::Png => {}
+    }
+    let gpu = Gpu::headless()?;
+    let targets = Renderer::new(&gpu, Arc::new(context.catalog)).render(&frame)?;
+    let [width, height] = frame.size;
+    let picture = match targets.read_display(&gpu)? {
+        Some(pixels) => encode_png(width, height, &pixels),
+        None => encode_exr(&Hdr {
+            width,
+            height,
+            texels: targets.read_hdr(&gpu)?,
+            comment: "linear Rec.709, cd/m2".to_owned(),
+        }),
+    };
+    let picture = picture.map_err(|error| Failure::message(error.to_string()))?;
+    let mut outputs = Outputs::default();
+    outputs.stage(&options.output, &picture)?;
+    outputs.commit()
+}
+
+fn read(path: &Path) -> Result<SceneFile, Failure> {
+    let text = input::text(path)?;
+    let name = if path == Path::new("-") {
+        "standard input".into()
+    } else {
+        path.to_string_lossy()
+    };
+    Ok(SceneFile::parse(&name, &text, path.parent().unwrap_or(Path::new("")))?)
+}
+
+/// Derives a scene's recipes and links them.
+///
+/// # Errors
+/// What is wrong with the scene.
+pub fn check(context: &Context, path: &Path) -> Result<(), Failure> {
+    let frame = read(path)?.frame(&context.catalog, None)?;
+    let mut recipes: Vec<&Node> = Vec::new();
+    for material in frame.materials.iter().chain(&frame.display) {
+        let recipe = material.recipe.as_ref();
+        if !recipes.contains(&recipe) {
+            recipes.push(recipe);
+            check::tree(context, &Recipe::from(recipe.clone()))?;
+        }
+    }
+    Ok(())
+}
