@@ -1,4 +1,5 @@
 //! `emit` and `check`.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! The commands that look: list, show, graph, why, diff.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod support;
 

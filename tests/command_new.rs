@@ -1,4 +1,5 @@
 //! `new`.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod support;
 
