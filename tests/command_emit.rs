@@ -302,6 +302,8 @@ fn check_finds_all_that_is_wrong() {
     assert!(ran.text().contains(&format!("ok     recipe {good_one}")), "{}", ran.text());
     assert!(ran.err.contains("SW0202") && ran.err.contains("SW0302"), "{}", ran.err);
     let ran = run(&["check", "--format", "json", &good_one, &category]);
+    // The last in order is good; the first is wrong all the same.
+    assert_eq!(ran.status, 1);
     let json = ran.json();
     let wrong = json
         .as_array()
