@@ -8,7 +8,9 @@ use indexmap::IndexMap;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::library::Library;
 use crate::limits;
-use crate::manifest::{CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, check_category, check_module, parse_category, parse_module, typed};
+use crate::manifest::{
+    CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, check_category, check_module, parse_category, parse_module, typed,
+};
 use crate::parse::scan::{Item, ItemKind, scan};
 use crate::parse::{Interface, Needs, SlotNeed, Unit, check_interface, compose, parse_unit};
 use crate::resolve::Place;
@@ -54,7 +56,10 @@ pub struct Catalog {
 
 impl std::fmt::Debug for Catalog {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Catalog").field("categories", &self.categories.len()).field("modules", &self.modules.len()).finish_non_exhaustive()
+        f.debug_struct("Catalog")
+            .field("categories", &self.categories.len())
+            .field("modules", &self.modules.len())
+            .finish_non_exhaustive()
     }
 }
 
@@ -78,7 +83,11 @@ impl Catalog {
                         found.extend(report.diagnostics);
                     }
                     modules.extend(load_modules(library.as_ref(), &name, &mut found)?);
-                    categories.push(Arc::new(Category { name, manifest: parsed.value, source: parsed.file }));
+                    categories.push(Arc::new(Category {
+                        name,
+                        manifest: parsed.value,
+                        source: parsed.file,
+                    }));
                 }
                 Err(report) => found.extend(report.diagnostics),
             }
@@ -86,9 +95,7 @@ impl Catalog {
         Report::unless_empty(found)?;
         categories.sort_by(|a, b| (a.manifest.order, &a.name).cmp(&(b.manifest.order, &b.name)));
         let order: HashMap<&str, usize> = categories.iter().enumerate().map(|(i, c)| (c.name.as_str(), i)).collect();
-        modules.sort_by(|a: &Arc<Module>, b| {
-            (order.get(a.category.as_str()), &a.name).cmp(&(order.get(b.category.as_str()), &b.name))
-        });
+        modules.sort_by(|a: &Arc<Module>, b| (order.get(a.category.as_str()), &a.name).cmp(&(order.get(b.category.as_str()), &b.name)));
         let catalog = Self {
             library,
             categories: categories.into_iter().map(|c| (c.name.clone(), c)).collect(),
@@ -117,7 +124,11 @@ impl Catalog {
 
     /// Names of the modules that fit a slot of this interface.
     pub fn fits(&self, interface: &str) -> Vec<String> {
-        self.modules.iter().filter(|m| m.category == interface).map(|m| m.name.clone()).collect()
+        self.modules
+            .iter()
+            .filter(|m| m.category == interface)
+            .map(|m| m.name.clone())
+            .collect()
     }
 
     /// The module of this name, or `category/name`.
@@ -133,8 +144,19 @@ impl Catalog {
         self.find(name, slot).map(Arc::clone).map_err(|mut diagnostic| {
             // The first place is the primary one: where the name was written.
             let file = Arc::clone(&place.file);
-            let text = if diagnostic.code == codes::WRONG_CATEGORY { "does not fit here" } else { "named here" };
-            diagnostic.labels.insert(0, crate::diagnostics::Label { file, span: place.name_span(), text: text.to_owned() });
+            let text = if diagnostic.code == codes::WRONG_CATEGORY {
+                "does not fit here"
+            } else {
+                "named here"
+            };
+            diagnostic.labels.insert(
+                0,
+                crate::diagnostics::Label {
+                    file,
+                    span: place.name_span(),
+                    text: text.to_owned(),
+                },
+            );
             Report::from(diagnostic)
         })
     }
@@ -144,16 +166,21 @@ impl Catalog {
             Some((category, short)) => (Some(category), short),
             None => (None, name),
         };
-        let all: Vec<&Arc<Module>> =
-            self.modules.iter().filter(|m| m.name == short && category.is_none_or(|c| c == m.category)).collect();
+        let all: Vec<&Arc<Module>> = self
+            .modules
+            .iter()
+            .filter(|m| m.name == short && category.is_none_or(|c| c == m.category))
+            .collect();
         let Some((interface, slot)) = slot else {
             return match all[..] {
                 [] => Err(self.unknown(name, None)),
                 [one] => Ok(one),
                 _ => {
                     let full: Vec<String> = all.iter().map(|m| format!("`{}/{}`", m.category, m.name)).collect();
-                    Err(Diagnostic::new(codes::AMBIGUOUS_NAME, format!("several modules are called `{name}`"))
-                        .note(format!("write one of {}", full.join(", "))))
+                    Err(
+                        Diagnostic::new(codes::AMBIGUOUS_NAME, format!("several modules are called `{name}`"))
+                            .note(format!("write one of {}", full.join(", "))),
+                    )
                 }
             };
         };
@@ -167,7 +194,10 @@ impl Catalog {
                 let fits = if fits.is_empty() { "none".to_owned() } else { fits.join(", ") };
                 Err(Diagnostic::new(
                     codes::WRONG_CATEGORY,
-                    format!("`{}` is a module of `{}`; the slot `{slot}` takes modules of `{interface}`", other.name, other.category),
+                    format!(
+                        "`{}` is a module of `{}`; the slot `{slot}` takes modules of `{interface}`",
+                        other.name, other.category
+                    ),
                 )
                 .note(format!("modules of `{interface}`: {fits}")))
             }
@@ -175,7 +205,11 @@ impl Catalog {
     }
 
     fn unknown(&self, name: &str, interface: Option<&str>) -> Diagnostic {
-        let known = self.modules.iter().filter(|m| interface.is_none_or(|i| m.category == i)).map(|m| m.name.as_str());
+        let known = self
+            .modules
+            .iter()
+            .filter(|m| interface.is_none_or(|i| m.category == i))
+            .map(|m| m.name.as_str());
         Diagnostic::new(codes::UNKNOWN_MODULE, format!("there is no module `{name}`")).suggest(name, "modules", known)
     }
 
@@ -193,14 +227,20 @@ impl Catalog {
         let file = match read(self.library.as_ref(), &path)? {
             Some(text) => SourceFile::new(path, text),
             None => {
-                return Err(Diagnostic::new(codes::MISSING_INTERFACE, format!("the category `{name}` has no `interface.wgsl`"))
-                    .at(&category.source, 0..0, "declared here")
-                    .into());
+                return Err(
+                    Diagnostic::new(codes::MISSING_INTERFACE, format!("the category `{name}` has no `interface.wgsl`"))
+                        .at(&category.source, 0..0, "declared here")
+                        .into(),
+                );
             }
         };
         limits::check_wgsl(&file)?;
         let scan = scan(&file.text);
-        let interface = Arc::new(Interface { category: Arc::clone(category), file, scan });
+        let interface = Arc::new(Interface {
+            category: Arc::clone(category),
+            file,
+            scan,
+        });
         lock(&self.interfaces).insert(name.to_owned(), Arc::clone(&interface));
         Ok(interface)
     }
@@ -211,9 +251,18 @@ impl Catalog {
             return Ok(Arc::clone(done));
         }
         let interface = self.interface(name)?;
-        let needs = Needs { uses: interface.category.manifest.uses.clone(), ..Needs::default() };
+        let needs = Needs {
+            uses: interface.category.manifest.uses.clone(),
+            ..Needs::default()
+        };
         let composed = compose(&interface.file, &interface.scan, &needs, &|n| self.interface(n))?;
-        let unit = parse_unit(Arc::clone(&interface.file), interface.scan.clone(), composed, needs, Some(name.to_owned()))?;
+        let unit = parse_unit(
+            Arc::clone(&interface.file),
+            interface.scan.clone(),
+            composed,
+            needs,
+            Some(name.to_owned()),
+        )?;
         let unit = Arc::new(unit);
         lock(&self.interface_units).insert(name.to_owned(), Arc::clone(&unit));
         Ok(unit)
@@ -257,7 +306,11 @@ impl Catalog {
         let composed = compose(&file, &scan, &needs, &|n| self.interface(n))?;
         let unit = parse_unit(file, scan, composed, needs, None)?;
         if !module.category.is_empty() {
-            check_interface(&unit, self.interface(&module.category)?.as_ref(), self.interface_unit(&module.category)?.as_ref())?;
+            check_interface(
+                &unit,
+                self.interface(&module.category)?.as_ref(),
+                self.interface_unit(&module.category)?.as_ref(),
+            )?;
         }
         Ok(unit)
     }
@@ -270,7 +323,11 @@ impl Catalog {
     pub fn functions(&self, category: &str) -> Result<IndexMap<String, String>, Report> {
         let interface = self.interface(category)?;
         let offers = &interface.category.manifest.offers;
-        let functions = interface.scan.items.iter().filter(|item| item.kind == ItemKind::Function && !offers.contains(&item.name));
+        let functions = interface
+            .scan
+            .items
+            .iter()
+            .filter(|item| item.kind == ItemKind::Function && !offers.contains(&item.name));
         let text = |item: &Item| interface.file.text[item.doc_start..item.span.end].to_owned();
         Ok(functions.map(|item| (item.name.clone(), text(item))).collect())
     }
@@ -297,7 +354,11 @@ fn needs(module: &Module, constants: &IndexMap<String, (Value, Typed)>) -> Resul
         slots: manifest
             .slots
             .iter()
-            .map(|(name, slot)| SlotNeed { name: name.clone(), interface: slot.interface.clone(), prefix: slot.prefix.clone() })
+            .map(|(name, slot)| SlotNeed {
+                name: name.clone(),
+                interface: slot.interface.clone(),
+                prefix: slot.prefix.clone(),
+            })
             .collect(),
         uses: manifest.uses.clone(),
         instances: manifest.instances.clone(),
@@ -310,7 +371,9 @@ fn needs(module: &Module, constants: &IndexMap<String, (Value, Typed)>) -> Resul
         }
         match param.mode {
             ParamMode::Override => {
-                needs.overrides.insert(name.clone(), (param.clone(), default_of(module, name, param)?));
+                needs
+                    .overrides
+                    .insert(name.clone(), (param.clone(), default_of(module, name, param)?));
             }
             _ => {
                 needs.uniforms.insert(name.clone(), param.clone());
@@ -333,8 +396,11 @@ fn load_modules(library: &dyn Library, category: &str, found: &mut Vec<Diagnosti
         let path = format!("{category}/{name}/module.ron");
         let Some(text) = read(library, &path)? else {
             found.push(
-                Diagnostic::new(codes::MISSING_MANIFEST, format!("the folder `{category}/{name}` has no `module.ron`"))
-                    .note("a folder in a category is a module"),
+                Diagnostic::new(
+                    codes::MISSING_MANIFEST,
+                    format!("the folder `{category}/{name}` has no `module.ron`"),
+                )
+                .note("a folder in a category is a module"),
             );
             continue;
         };
@@ -343,7 +409,13 @@ fn load_modules(library: &dyn Library, category: &str, found: &mut Vec<Diagnosti
                 if let Err(report) = check_module(&parsed) {
                     found.extend(report.diagnostics);
                 }
-                modules.push(Arc::new(Module { name, category: category.to_owned(), manifest: parsed.value, source: parsed.file, unit: None }));
+                modules.push(Arc::new(Module {
+                    name,
+                    category: category.to_owned(),
+                    manifest: parsed.value,
+                    source: parsed.file,
+                    unit: None,
+                }));
             }
             Err(report) => found.extend(report.diagnostics),
         }
@@ -358,7 +430,9 @@ fn sorted(mut names: Vec<String>) -> Vec<String> {
 }
 
 fn read(library: &dyn Library, path: &str) -> Result<Option<String>, Report> {
-    library.read(path).map_err(|why| Diagnostic::new(codes::UNREADABLE_FILE, format!("`{path}` cannot be read: {why}")).into())
+    library
+        .read(path)
+        .map_err(|why| Diagnostic::new(codes::UNREADABLE_FILE, format!("`{path}` cannot be read: {why}")).into())
 }
 
 /// A panic while the lock was held can only have left a cache entry out: the maps are never half changed.

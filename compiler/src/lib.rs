@@ -2,22 +2,22 @@
 
 pub mod canonical;
 pub mod catalog;
-mod link;
-mod parse;
-mod plan;
-mod probe;
-mod resolve;
 pub mod diagnostics;
 pub mod emit;
 pub mod hash;
 pub mod library;
 pub mod limits;
+mod link;
 pub mod manifest;
+mod parse;
+mod plan;
+mod probe;
 pub mod program;
-pub(crate) mod why;
 pub mod reflect;
+mod resolve;
 pub mod upstream;
 pub mod validate;
+pub(crate) mod why;
 
 pub use catalog::{Catalog, Category, Module};
 pub use diagnostics::{Diagnostic, Report};

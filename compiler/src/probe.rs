@@ -8,8 +8,8 @@ use crate::canonical::empty_manifest;
 use crate::catalog::{Catalog, Module};
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::manifest::{Arity, Filling, ModuleManifest, Node, Resource, ResourceKind, Slot};
-use crate::parse::scan::{Item, ItemKind, Scan};
 use crate::parse::lex::Kind;
+use crate::parse::scan::{Item, ItemKind, Scan};
 use crate::plan::Roots;
 use crate::program::{Program, Recipe};
 use crate::resolve::{Instances, Place, resolve_root};
@@ -30,20 +30,36 @@ impl Catalog {
         let root = self.module_at(&recipe.root.module, None, &place)?;
         let interface = self.interface(&root.category)?;
         let offers = &interface.category.manifest.offers;
-        let functions: Vec<&Item> =
-            interface.scan.items.iter().filter(|i| i.kind == ItemKind::Function && !offers.contains(&i.name)).collect();
+        let functions: Vec<&Item> = interface
+            .scan
+            .items
+            .iter()
+            .filter(|i| i.kind == ItemKind::Function && !offers.contains(&i.name))
+            .collect();
         let Some(item) = functions.iter().find(|i| i.name == function) else {
             let known: Vec<&str> = functions.iter().map(|i| i.name.as_str()).collect();
-            return Err(Diagnostic::new(codes::UNKNOWN_PROBE, format!("`{}` has no function `{function}`", root.category))
-                .at(&recipe.source, place.name_span(), format!("a module of `{}`", root.category))
-                .suggest(function, "functions", known)
-                .into());
+            return Err(
+                Diagnostic::new(codes::UNKNOWN_PROBE, format!("`{}` has no function `{function}`", root.category))
+                    .at(&recipe.source, place.name_span(), format!("a module of `{}`", root.category))
+                    .suggest(function, "functions", known)
+                    .into(),
+            );
         };
         let text = probe_text(&interface.file.text, &interface.scan, item);
         let source = SourceFile::new("probe", "");
         let manifest = probe_manifest(&root.category);
-        let mut module = Module { name: PROBE.to_owned(), category: String::new(), manifest, source, unit: None };
-        module.unit = Some(Arc::new(self.parse_module(&module, SourceFile::new("probe.wgsl", text), &IndexMap::new())?));
+        let mut module = Module {
+            name: PROBE.to_owned(),
+            category: String::new(),
+            manifest,
+            source,
+            unit: None,
+        };
+        module.unit = Some(Arc::new(self.parse_module(
+            &module,
+            SourceFile::new("probe.wgsl", text),
+            &IndexMap::new(),
+        )?));
         let module = Arc::new(module);
         let mut node = Node::new(PROBE);
         node.fill.insert("subject".to_owned(), Filling::One(recipe.root.clone()));
@@ -62,7 +78,11 @@ fn probe_manifest(interface: &str) -> ModuleManifest {
         doc: String::new(),
         represents: IndexMap::new(),
     };
-    let host = |name: &str| Resource { kind: ResourceKind::Host(name.to_owned()), group: Some(3), doc: String::new() };
+    let host = |name: &str| Resource {
+        kind: ResourceKind::Host(name.to_owned()),
+        group: Some(3),
+        doc: String::new(),
+    };
     ModuleManifest {
         summary: "Evaluates a function over a table".to_owned(),
         slots: IndexMap::from([("subject".to_owned(), slot)]),
@@ -90,9 +110,17 @@ fn probe_text(text: &str, scan: &Scan, item: &Item) -> String {
         // WGSL has no empty structs.
         members.push_str("    nothing: u32,\n");
     }
-    let skipped = item.result.clone().find(|&at| scan.tokens[at].kind == Kind::Word).unwrap_or(item.result.start);
+    let skipped = item
+        .result
+        .clone()
+        .find(|&at| scan.tokens[at].kind == Kind::Word)
+        .unwrap_or(item.result.start);
     let result = text[scan.bytes(&(skipped..item.result.end))].to_owned();
-    let (result, value) = if result == "bool" { ("u32".to_owned(), format!("u32({}(", item.name)) } else { (result, format!("({}(", item.name)) };
+    let (result, value) = if result == "bool" {
+        ("u32".to_owned(), format!("u32({}(", item.name))
+    } else {
+        (result, format!("({}(", item.name))
+    };
     format!(
         "struct ProbeInput {{\n{members}}}\nstruct ProbeOutput {{\n    value: {result},\n}}\n\
          var<storage, read> probe_input: array<ProbeInput>;\nvar<storage, read_write> probe_output: array<ProbeOutput>;\n\n\

@@ -94,7 +94,10 @@ impl Recipe {
     /// The text is no RON, or no recipe.
     pub fn parse(name: &str, text: &str) -> Result<Self, Report> {
         let parsed = parse_recipe(name, text)?;
-        Ok(Self { root: parsed.value, source: parsed.file })
+        Ok(Self {
+            root: parsed.value,
+            source: parsed.file,
+        })
     }
 }
 
@@ -102,7 +105,10 @@ impl From<Node> for Recipe {
     fn from(root: Node) -> Self {
         // A tree of strings, numbers and lists always serialises.
         let text = ron::to_string(&root).unwrap_or_default();
-        Self { root, source: SourceFile::new("recipe", text) }
+        Self {
+            root,
+            source: SourceFile::new("recipe", text),
+        }
     }
 }
 
@@ -125,7 +131,10 @@ impl Catalog {
         });
         match found {
             Some((instance, _, PassDecl::Compute { entry, .. })) => {
-                let roots = Roots::Entry { instance, entry: entry.clone() };
+                let roots = Roots::Entry {
+                    instance,
+                    entry: entry.clone(),
+                };
                 self.finish(tree, instances, &roots, pass)
             }
             Some((instance, own, PassDecl::Draw { root, inherit, .. })) => {
@@ -160,7 +169,13 @@ impl Catalog {
         let hash = crate::hash::structural_hash(&module);
         let validated = validate(module).map_err(|error| located(&plan, &error))?;
         let reflection = reflect(self, &plan, &validated, hash, pass);
-        Ok(Program { validated, reflection, hash, plan, wgsl: OnceLock::new() })
+        Ok(Program {
+            validated,
+            reflection,
+            hash,
+            plan,
+            wgsl: OnceLock::new(),
+        })
     }
 }
 
@@ -177,5 +192,7 @@ fn located(plan: &Plan, error: &naga::WithSpan<naga::valid::ValidationError>) ->
             }
         }
     }
-    diagnostic.note("the modules are valid each by itself, but not linked together").into()
+    diagnostic
+        .note("the modules are valid each by itself, but not linked together")
+        .into()
 }

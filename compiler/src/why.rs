@@ -25,7 +25,11 @@ pub fn why(plan: &Plan, reflection: &Reflection, name: &str) -> Vec<Why> {
     let mut found = Vec::new();
     for (index, planned) in plan.functions.iter().enumerate() {
         if planned.name == name {
-            let kind = if matches!(planned.body, Body::Entry(_)) { "entry point" } else { "function" };
+            let kind = if matches!(planned.body, Body::Entry(_)) {
+                "entry point"
+            } else {
+                "function"
+            };
             found.push(answer(plan, name, kind, planned.home, path_to(plan, index)));
         }
     }
@@ -37,13 +41,25 @@ pub fn why(plan: &Plan, reflection: &Reflection, name: &str) -> Vec<Why> {
         };
         if emitted == name || param.name == name || format!("{}.{}", param.instance, param.name) == name {
             if let Some(home) = plan.instances.list.iter().position(|i| i.name == param.instance) {
-                found.push(answer(plan, name, "parameter", home, user(plan, home, |e, unit| reads_param(e, unit, &param.name))));
+                found.push(answer(
+                    plan,
+                    name,
+                    "parameter",
+                    home,
+                    user(plan, home, |e, unit| reads_param(e, unit, &param.name)),
+                ));
             }
         }
     }
     if let Some(block) = plan.blocks.iter().find(|b| format!("{}_params", GROUPS[b.group as usize]) == name) {
         for member in &block.members {
-            found.push(answer(plan, name, "binding", member.home, user(plan, member.home, |e, unit| reads_param(e, unit, &member.param))));
+            found.push(answer(
+                plan,
+                name,
+                "binding",
+                member.home,
+                user(plan, member.home, |e, unit| reads_param(e, unit, &member.param)),
+            ));
         }
     }
     for global in &plan.globals {
@@ -52,11 +68,22 @@ pub fn why(plan: &Plan, reflection: &Reflection, name: &str) -> Vec<Why> {
         let emitted = plan.names.get(&(global.home, own.clone())).unwrap_or(&own);
         if emitted == name {
             let path = (0..plan.functions.len()).find(|&f| reads_global(plan, f, global.home, global.handle));
-            found.push(answer(plan, name, "binding", global.home, path.map_or_else(Vec::new, |f| path_to(plan, f))));
+            found.push(answer(
+                plan,
+                name,
+                "binding",
+                global.home,
+                path.map_or_else(Vec::new, |f| path_to(plan, f)),
+            ));
         }
     }
     if found.is_empty() {
-        found.extend(plan.names.iter().filter(|(_, emitted)| *emitted == name).filter_map(|((home, own), _)| item(plan, name, *home, own)));
+        found.extend(
+            plan.names
+                .iter()
+                .filter(|(_, emitted)| *emitted == name)
+                .filter_map(|((home, own), _)| item(plan, name, *home, own)),
+        );
     }
     found
 }
@@ -76,7 +103,9 @@ fn item(plan: &Plan, name: &str, home: usize, own: &str) -> Option<Why> {
         let unit = &plan.homes[p.home].unit;
         let knows = p.home == home || matches!(unit.origin(own), Some(crate::parse::Origin::Interface(_)));
         let mentions = |item: &crate::parse::scan::Item| {
-            item.references.iter().any(|r| &unit.file.text[unit.scan.tokens[r.token].range()] == own)
+            item.references
+                .iter()
+                .any(|r| &unit.file.text[unit.scan.tokens[r.token].range()] == own)
         };
         knows && unit.scan.item(p.source_name(&plan.homes)).is_some_and(mentions)
     })?;
@@ -94,7 +123,14 @@ fn answer(plan: &Plan, name: &str, kind: &str, home: usize, path: Vec<String>) -
             (unit.interface.clone().unwrap_or_default(), String::new(), unit.file.name.clone())
         }
     };
-    Why { name: name.to_owned(), kind: kind.to_owned(), path, module, place, because }
+    Why {
+        name: name.to_owned(),
+        kind: kind.to_owned(),
+        path,
+        module,
+        place,
+        because,
+    }
 }
 
 /// Emitted names from the entry point to a function.
@@ -110,7 +146,10 @@ fn path_to(plan: &Plan, function: usize) -> Vec<String> {
 
 /// The way to the first function of a home with a living expression that fits.
 fn user(plan: &Plan, home: usize, fits: impl Fn(&naga::Function, &crate::parse::Unit) -> bool) -> Vec<String> {
-    let found = plan.functions.iter().position(|p| p.home == home && p.ir(&plan.homes).is_some_and(|f| fits(f, &plan.homes[home].unit)));
+    let found = plan
+        .functions
+        .iter()
+        .position(|p| p.home == home && p.ir(&plan.homes).is_some_and(|f| fits(f, &plan.homes[home].unit)));
     found.map_or_else(Vec::new, |f| path_to(plan, f))
 }
 
@@ -132,7 +171,9 @@ fn reads_global(plan: &Plan, function: usize, home: usize, global: naga::Handle<
     let planned = &plan.functions[function];
     planned.ir(&plan.homes).is_some_and(|f| {
         f.expressions.iter().any(|(h, e)| match *e {
-            naga::Expression::GlobalVariable(g) => planned.live[h.index()] && crate::plan::declaring(plan, planned.home, g) == (home, global),
+            naga::Expression::GlobalVariable(g) => {
+                planned.live[h.index()] && crate::plan::declaring(plan, planned.home, g) == (home, global)
+            }
             _ => false,
         })
     })

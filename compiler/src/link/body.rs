@@ -23,16 +23,32 @@ struct Clone<'f> {
 impl Linker<'_> {
     pub fn body(&mut self, planned: &Planned, source: &Function) -> Function {
         let home = planned.home;
-        let mut out = Function { name: Some(planned.name.clone()), ..Function::default() };
+        let mut out = Function {
+            name: Some(planned.name.clone()),
+            ..Function::default()
+        };
         for argument in &source.arguments {
             let ty = self.ty(home, argument.ty);
-            out.arguments.push(FunctionArgument { name: argument.name.clone(), ty, binding: argument.binding.clone() });
+            out.arguments.push(FunctionArgument {
+                name: argument.name.clone(),
+                ty,
+                binding: argument.binding.clone(),
+            });
         }
-        out.result = source.result.as_ref().map(|r| FunctionResult { ty: self.ty(home, r.ty), binding: r.binding.clone() });
+        out.result = source.result.as_ref().map(|r| FunctionResult {
+            ty: self.ty(home, r.ty),
+            binding: r.binding.clone(),
+        });
         let plan = self.plan;
         let Some(info) = planned.info(&plan.homes) else { return out };
-        let mut clone =
-            Clone { home, planned, source, info, exprs: vec![None; source.expressions.len()], locals: vec![None; source.local_variables.len()] };
+        let mut clone = Clone {
+            home,
+            planned,
+            source,
+            info,
+            exprs: vec![None; source.expressions.len()],
+            locals: vec![None; source.local_variables.len()],
+        };
         for (handle, expression) in source.expressions.iter() {
             if planned.live[handle.index()] {
                 let patched = self.expression(&mut clone, &mut out, expression);
@@ -59,7 +75,14 @@ impl Linker<'_> {
         // Initialisers are constant expressions that precede every use.
         let init = declared.init.and_then(|e| clone.exprs[e.index()]);
         let span = self.span(clone.home, clone.source.local_variables.get_span(handle));
-        let done = out.local_variables.append(LocalVariable { name: declared.name.clone(), ty, init }, span);
+        let done = out.local_variables.append(
+            LocalVariable {
+                name: declared.name.clone(),
+                ty,
+                init,
+            },
+            span,
+        );
         clone.locals[handle.index()] = Some(done);
         done
     }
@@ -92,7 +115,11 @@ impl Linker<'_> {
             }
             Expression::GlobalVariable(global) => {
                 let unit = &self.plan.homes[home].unit;
-                *global = if is_params(unit, *global) { self.params_block(clone, *global) } else { self.global(home, *global) };
+                *global = if is_params(unit, *global) {
+                    self.params_block(clone, *global)
+                } else {
+                    self.global(home, *global)
+                };
             }
             Expression::LocalVariable(local) => *local = self.local(clone, out, *local),
             Expression::CallResult(function) => *function = self.callee(clone, *function),
@@ -114,8 +141,23 @@ impl Linker<'_> {
             | Expression::ArrayLength(h)
             | Expression::RayQueryVertexPositions { query: h, .. }
             | Expression::RayQueryGetIntersection { query: h, .. } => *h = clone.get(*h),
-            Expression::ImageSample { image, sampler, coordinate, array_index, offset, level, depth_ref, gather: _, clamp_to_edge: _ } => {
-                for h in [image, sampler, coordinate].into_iter().chain(array_index).chain(offset).chain(depth_ref) {
+            Expression::ImageSample {
+                image,
+                sampler,
+                coordinate,
+                array_index,
+                offset,
+                level,
+                depth_ref,
+                gather: _,
+                clamp_to_edge: _,
+            } => {
+                for h in [image, sampler, coordinate]
+                    .into_iter()
+                    .chain(array_index)
+                    .chain(offset)
+                    .chain(depth_ref)
+                {
                     *h = clone.get(*h);
                 }
                 match level {
@@ -127,7 +169,13 @@ impl Linker<'_> {
                     }
                 }
             }
-            Expression::ImageLoad { image, coordinate, array_index, sample, level } => {
+            Expression::ImageLoad {
+                image,
+                coordinate,
+                array_index,
+                sample,
+                level,
+            } => {
                 for h in [image, coordinate].into_iter().chain(array_index).chain(sample).chain(level) {
                     *h = clone.get(*h);
                 }
@@ -147,7 +195,13 @@ impl Linker<'_> {
                     *h = clone.get(*h);
                 }
             }
-            Expression::Math { arg, arg1, arg2, arg3, fun } => {
+            Expression::Math {
+                arg,
+                arg1,
+                arg2,
+                arg3,
+                fun,
+            } => {
                 if matches!(fun, naga::MathFunction::Modf | naga::MathFunction::Frexp) {
                     self.result_types(home);
                 }
@@ -170,7 +224,14 @@ impl Linker<'_> {
 
     /// `modf` and `frexp` name their result's type only through the module's list of predeclared types.
     fn result_types(&mut self, home: usize) {
-        let types: Vec<_> = self.plan.homes[home].unit.ir.special_types.predeclared_types.values().copied().collect();
+        let types: Vec<_> = self.plan.homes[home]
+            .unit
+            .ir
+            .special_types
+            .predeclared_types
+            .values()
+            .copied()
+            .collect();
         for ty in types {
             self.ty(home, ty);
         }
@@ -178,20 +239,31 @@ impl Linker<'_> {
 
     fn callee(&self, clone: &Clone, function: Handle<Function>) -> Handle<Function> {
         // Every call of a live branch was planned, and callees are linked before their callers.
-        clone.planned.calls.get(&function).and_then(|&index| self.functions[index]).unwrap_or(function)
+        clone
+            .planned
+            .calls
+            .get(&function)
+            .and_then(|&index| self.functions[index])
+            .unwrap_or(function)
     }
 
     /// Whether a call stays although nobody reads its result.
     fn is_kept(&self, clone: &Clone, callee: Handle<Function>) -> bool {
-        !can_go(&self.plan.functions, clone.planned, &self.plan.homes[clone.home].unit, callee)
-            && clone.planned.calls.contains_key(&callee)
+        !can_go(&self.plan.functions, clone.planned, &self.plan.homes[clone.home].unit, callee) && clone.planned.calls.contains_key(&callee)
     }
 
     /// The block for a use of `params`: all parameters of one home are in one group.
     fn params_block(&mut self, clone: &Clone, global: Handle<naga::GlobalVariable>) -> Handle<naga::GlobalVariable> {
         let plan = self.plan;
-        let member = plan.live_params.iter().filter(|(home, _)| *home == clone.home).map(|&(_, index)| index).min();
-        member.and_then(|index| self.block_member(clone.home, index)).map_or(global, |(block, _)| block)
+        let member = plan
+            .live_params
+            .iter()
+            .filter(|(home, _)| *home == clone.home)
+            .map(|&(_, index)| index)
+            .min();
+        member
+            .and_then(|index| self.block_member(clone.home, index))
+            .map_or(global, |(block, _)| block)
     }
 
     fn member_index(&mut self, clone: &Clone, base: Handle<Expression>, index: u32) -> u32 {
@@ -261,20 +333,37 @@ impl Linker<'_> {
         let mut patched = match statement {
             Statement::If { condition, accept, reject } => {
                 let (accept, reject) = (self.block(clone, out, accept), self.block(clone, out, reject));
-                return Some(Statement::If { condition: clone.get(*condition), accept, reject });
+                return Some(Statement::If {
+                    condition: clone.get(*condition),
+                    accept,
+                    reject,
+                });
             }
             Statement::Switch { selector, cases } => {
-                let case = |c: &SwitchCase| SwitchCase { value: c.value, body: self.block(clone, out, &c.body), fall_through: c.fall_through };
-                return Some(Statement::Switch { selector: clone.get(*selector), cases: cases.iter().map(case).collect() });
+                let case = |c: &SwitchCase| SwitchCase {
+                    value: c.value,
+                    body: self.block(clone, out, &c.body),
+                    fall_through: c.fall_through,
+                };
+                return Some(Statement::Switch {
+                    selector: clone.get(*selector),
+                    cases: cases.iter().map(case).collect(),
+                });
             }
-            Statement::Loop { body, continuing, break_if } => {
+            Statement::Loop {
+                body,
+                continuing,
+                break_if,
+            } => {
                 return Some(Statement::Loop {
                     body: self.block(clone, out, body),
                     continuing: self.block(clone, out, continuing),
                     break_if: break_if.map(|b| clone.get(b)),
                 });
             }
-            Statement::Store { pointer, .. } if is_dead_store(clone.home, &plan.structs, clone.source, clone.info, ir, *pointer) => return None,
+            Statement::Store { pointer, .. } if is_dead_store(clone.home, &plan.structs, clone.source, clone.info, ir, *pointer) => {
+                return None;
+            }
             // A call that can go, and whose result nobody reads.
             Statement::Call { function, result, .. }
                 if result.is_none_or(|r| clone.exprs[r.index()].is_none()) && !self.is_kept(clone, *function) =>
@@ -284,7 +373,11 @@ impl Linker<'_> {
             other => other.clone(),
         };
         match &mut patched {
-            Statement::Call { function, arguments, result } => {
+            Statement::Call {
+                function,
+                arguments,
+                result,
+            } => {
                 *function = self.callee(clone, *function);
                 arguments.iter_mut().chain(result).for_each(|h| *h = clone.get(*h));
             }
@@ -321,16 +414,32 @@ fn needs_no_emit(expression: &Expression) -> bool {
 fn patch_operands(statement: &mut Statement, get: &dyn Fn(Handle<Expression>) -> Handle<Expression>) {
     let patch = |h: &mut Handle<Expression>| *h = get(*h);
     match statement {
-        Statement::ImageStore { image, coordinate, array_index, value } => {
+        Statement::ImageStore {
+            image,
+            coordinate,
+            array_index,
+            value,
+        } => {
             [image, coordinate, value].into_iter().chain(array_index).for_each(patch);
         }
-        Statement::Atomic { pointer, fun, value, result } => {
+        Statement::Atomic {
+            pointer,
+            fun,
+            value,
+            result,
+        } => {
             [pointer, value].into_iter().chain(result).for_each(patch);
             if let naga::AtomicFunction::Exchange { compare: Some(compare) } = fun {
                 patch(compare);
             }
         }
-        Statement::ImageAtomic { image, coordinate, array_index, fun, value } => {
+        Statement::ImageAtomic {
+            image,
+            coordinate,
+            array_index,
+            fun,
+            value,
+        } => {
             [image, coordinate, value].into_iter().chain(array_index).for_each(patch);
             if let naga::AtomicFunction::Exchange { compare: Some(compare) } = fun {
                 patch(compare);

@@ -6,9 +6,9 @@ use std::ops::Range;
 
 use naga::{Block, Handle, Span, Statement};
 
-use crate::parse::{Origin, Unit};
 use crate::parse::lex::{Kind, Token};
 use crate::parse::scan::{Item, closing};
+use crate::parse::{Origin, Unit};
 use crate::plan::{Choice, Plan, Planned, can_go, choice, is_dead_store, leaves, reachable};
 
 /// A stretch of text and what stands there instead.
@@ -28,8 +28,17 @@ pub struct Dead<'a> {
 /// Finds the dead text of a function.
 pub fn dead_text(plan: &Plan, planned: &Planned, item: &Item) -> Vec<Range<usize>> {
     let unit = &plan.homes[planned.home].unit;
-    let Some(function) = planned.ir(&plan.homes) else { return Vec::new() };
-    let mut dead = Dead { plan, planned, item, text: &unit.file.text, tokens: &unit.scan.tokens, ranges: Vec::new() };
+    let Some(function) = planned.ir(&plan.homes) else {
+        return Vec::new();
+    };
+    let mut dead = Dead {
+        plan,
+        planned,
+        item,
+        text: &unit.file.text,
+        tokens: &unit.scan.tokens,
+        ranges: Vec::new(),
+    };
     dead.block(function, &function.body);
     dead.constructor_arguments();
     dead.unread_lets(function);
@@ -83,7 +92,9 @@ impl Dead<'_> {
                     }
                 }
             }
-            Statement::Call { function: callee, result, .. } => {
+            Statement::Call {
+                function: callee, result, ..
+            } => {
                 let unread = result.is_none_or(|r| !self.planned.live[r.index()]);
                 if unread && !self.is_kept(*callee) {
                     self.call_statement(unit, span, *callee);
@@ -243,7 +254,9 @@ impl Dead<'_> {
                 Some(Origin::Own) => Some(plan.homes[self.planned.home].first),
                 _ => None,
             };
-            let Some(id) = declared.and_then(|home| plan.structs.named(home, name)) else { continue };
+            let Some(id) = declared.and_then(|home| plan.structs.named(home, name)) else {
+                continue;
+            };
             let open = reference.token + 1;
             if !self.tokens.get(open).is_some_and(|t| t.is(b'(')) {
                 continue;
@@ -262,7 +275,11 @@ impl Dead<'_> {
             // With the comma behind it, or, of the last one, the comma before it.
             let range = if pair[1] == close {
                 let kept_before = (0..member).any(|m| self.plan.structs.is_live(id, m as u32));
-                let from = if kept_before { self.tokens[pair[0]].start } else { self.tokens[pair[0]].end };
+                let from = if kept_before {
+                    self.tokens[pair[0]].start
+                } else {
+                    self.tokens[pair[0]].end
+                };
                 from as usize..self.tokens[close].start as usize
             } else {
                 let to = self.tokens.get(pair[1] + 1).map_or(self.tokens[pair[1]].end, |t| t.start);
@@ -314,7 +331,9 @@ impl Dead<'_> {
                 if !(phony || self.word(at) == "let") || self.is_dead(at) {
                     continue;
                 }
-                let Some(end) = (at..self.item.body.end).find(|&t| self.tokens[t].is(b';')) else { continue };
+                let Some(end) = (at..self.item.body.end).find(|&t| self.tokens[t].is(b';')) else {
+                    continue;
+                };
                 let calls = (at..end).any(|t| self.calls(t));
                 if !calls && (phony || !self.is_read(at + 1, end) || self.is_unneeded(function, at + 1, end)) {
                     self.remove_statement(at);
@@ -337,7 +356,9 @@ impl Dead<'_> {
         if self.tokens[at].kind != Kind::Word || !self.tokens.get(at + 1).is_some_and(|t| t.is(b'(')) {
             return false;
         }
-        let acts = ["atomic", "subgroup", "quad", "workgroupUniformLoad", "ray"].iter().any(|p| word.starts_with(p));
+        let acts = ["atomic", "subgroup", "quad", "workgroupUniformLoad", "ray"]
+            .iter()
+            .any(|p| word.starts_with(p));
         let unit = &self.plan.homes[self.planned.home].unit;
         acts || unit.functions.get(word).is_some_and(|&f| self.is_kept(f))
     }
@@ -351,9 +372,8 @@ impl Dead<'_> {
     /// Whether the name declared at `name` is mentioned in living text elsewhere.
     fn is_read(&self, name: usize, end: usize) -> bool {
         let word = self.word(name);
-        (end..self.item.body.end).any(|at| {
-            self.word(at) == word && self.tokens[at].kind == Kind::Word && !self.tokens[at - 1].is(b'.') && !self.is_dead(at)
-        })
+        (end..self.item.body.end)
+            .any(|at| self.word(at) == word && self.tokens[at].kind == Kind::Word && !self.tokens[at - 1].is(b'.') && !self.is_dead(at))
     }
 
     /// Whether the IR knows the value under this name, and knows it to be dead.

@@ -79,8 +79,9 @@ impl<'p> Linker<'p> {
                 let entry = &self.plan.homes[planned.home].unit.ir.entry_points[*entry];
                 let mut function = self.body(planned, &entry.function);
                 function.name.clone_from(&entry.function.name);
-                let workgroup_size_overrides =
-                    entry.workgroup_size_overrides.map(|sizes| sizes.map(|size| size.map(|e| self.global_expression(planned.home, e))));
+                let workgroup_size_overrides = entry
+                    .workgroup_size_overrides
+                    .map(|sizes| sizes.map(|size| size.map(|e| self.global_expression(planned.home, e))));
                 self.out.entry_points.push(EntryPoint {
                     name: planned.name.clone(),
                     stage: entry.stage,
@@ -174,7 +175,14 @@ impl<'p> Linker<'p> {
         let ty = self.ty(home, constant.ty);
         let init = self.global_expression(home, constant.init);
         let span = self.span(home, ir.constants.get_span(handle));
-        let done = self.out.constants.append(Constant { name: self.name(home, &constant.name), ty, init }, span);
+        let done = self.out.constants.append(
+            Constant {
+                name: self.name(home, &constant.name),
+                ty,
+                init,
+            },
+            span,
+        );
         self.copied[home].constants.insert(handle, done);
         done
     }
@@ -183,10 +191,21 @@ impl<'p> Linker<'p> {
     fn declaring_constant(&self, home: usize, handle: Handle<Constant>) -> (usize, Handle<Constant>) {
         let plan = self.plan;
         let unit = &plan.homes[home].unit;
-        let Some(name) = &unit.ir.constants[handle].name else { return (home, handle) };
-        let Some(Origin::Interface(category)) = unit.origin(name) else { return (home, handle) };
-        let Some(declared) = plan.interface_home(category) else { return (home, handle) };
-        let found = plan.homes[declared].unit.ir.constants.iter().find(|(_, c)| c.name.as_ref() == Some(name));
+        let Some(name) = &unit.ir.constants[handle].name else {
+            return (home, handle);
+        };
+        let Some(Origin::Interface(category)) = unit.origin(name) else {
+            return (home, handle);
+        };
+        let Some(declared) = plan.interface_home(category) else {
+            return (home, handle);
+        };
+        let found = plan.homes[declared]
+            .unit
+            .ir
+            .constants
+            .iter()
+            .find(|(_, c)| c.name.as_ref() == Some(name));
         found.map_or((home, handle), |(h, _)| (declared, h))
     }
 
@@ -199,7 +218,15 @@ impl<'p> Linker<'p> {
         let ty = self.ty(home, declared.ty);
         let init = declared.init.map(|init| self.global_expression(home, init));
         let span = self.span(home, ir.overrides.get_span(handle));
-        let done = self.out.overrides.append(Override { name: self.name(home, &declared.name), id: declared.id, ty, init }, span);
+        let done = self.out.overrides.append(
+            Override {
+                name: self.name(home, &declared.name),
+                id: declared.id,
+                ty,
+                init,
+            },
+            span,
+        );
         self.copied[home].overrides.insert(handle, done);
         done
     }
@@ -218,7 +245,9 @@ impl<'p> Linker<'p> {
         let variable = GlobalVariable {
             name: self.name(home, &declared.name),
             space: declared.space,
-            binding: planned.and_then(|g| g.binding).map(|(group, binding)| ResourceBinding { group, binding }),
+            binding: planned
+                .and_then(|g| g.binding)
+                .map(|(group, binding)| ResourceBinding { group, binding }),
             ty,
             init,
             memory_decorations: declared.memory_decorations,
@@ -268,7 +297,10 @@ impl<'p> Linker<'p> {
         let variable = GlobalVariable {
             name: Some(format!("{group}_params")),
             space: naga::AddressSpace::Uniform,
-            binding: Some(ResourceBinding { group: block.group, binding: block.binding }),
+            binding: Some(ResourceBinding {
+                group: block.group,
+                binding: block.binding,
+            }),
             ty,
             init: None,
             memory_decorations: naga::MemoryDecorations::empty(),

@@ -12,10 +12,17 @@ use crate::plan::{Body, GROUPS, Plan, Planned, joined};
 
 /// Writes the source form.
 pub fn write_source(plan: &Plan) -> String {
-    let mut writer = Writer { plan, wanted: BTreeSet::new(), queue: VecDeque::new(), params: HashMap::new() };
+    let mut writer = Writer {
+        plan,
+        wanted: BTreeSet::new(),
+        queue: VecDeque::new(),
+        params: HashMap::new(),
+    };
     for (number, block) in plan.blocks.iter().enumerate() {
         for member in &block.members {
-            writer.params.insert((member.home, member.param.clone()), (number, member.name.clone()));
+            writer
+                .params
+                .insert((member.home, member.param.clone()), (number, member.name.clone()));
         }
     }
     writer.write()
@@ -52,7 +59,11 @@ impl Writer<'_> {
         }
         let mut out = self.directives();
         // Interfaces first, instances in tree order, each in the order of its text.
-        for kinds in [&[ItemKind::Constant, ItemKind::Override][..], &[ItemKind::Alias, ItemKind::Struct][..], &[ItemKind::Variable][..]] {
+        for kinds in [
+            &[ItemKind::Constant, ItemKind::Override][..],
+            &[ItemKind::Alias, ItemKind::Struct][..],
+            &[ItemKind::Variable][..],
+        ] {
             for home in self.homes_in_order() {
                 for name in self.names_in_order(home) {
                     if let Some((kind, text)) = items.get(&(home, name)) {
@@ -81,13 +92,21 @@ impl Writer<'_> {
     fn homes_in_order(&self) -> Vec<usize> {
         let homes = &self.plan.homes;
         let interfaces = (0..homes.len()).filter(|&h| homes[h].instance.is_none());
-        interfaces.chain((0..homes.len()).filter(|&h| homes[h].instance.is_some())).collect()
+        interfaces
+            .chain((0..homes.len()).filter(|&h| homes[h].instance.is_some()))
+            .collect()
     }
 
     /// Names of a home's items, the linker's own first.
     fn names_in_order(&self, home: usize) -> Vec<String> {
         let unit = &self.plan.homes[home].unit;
-        let mut names: Vec<String> = unit.needs.constants.keys().chain(unit.needs.overrides.keys()).map(|n| constant_name(n)).collect();
+        let mut names: Vec<String> = unit
+            .needs
+            .constants
+            .keys()
+            .chain(unit.needs.overrides.keys())
+            .map(|n| constant_name(n))
+            .collect();
         names.extend(["Instance".to_owned(), "instances".to_owned()]);
         names.extend(unit.scan.items.iter().map(|i| i.name.clone()));
         let mut seen = BTreeSet::new();
@@ -125,7 +144,11 @@ impl Writer<'_> {
                 let declared = self.plan.homes[member.home].unit.needs.uniforms.get(&member.param);
                 let Some(param) = declared else { continue };
                 if !param.doc.is_empty() {
-                    let unit = if param.unit.is_empty() || param.unit == "1" { String::new() } else { format!(" [{}]", param.unit) };
+                    let unit = if param.unit.is_empty() || param.unit == "1" {
+                        String::new()
+                    } else {
+                        format!(" [{}]", param.unit)
+                    };
                     let _ = writeln!(out, "    /// {}{unit}", param.doc.replace('\n', " "));
                 }
                 let _ = writeln!(out, "    {}: {},", member.name, wgsl_type(param.ty));
@@ -135,7 +158,11 @@ impl Writer<'_> {
         for block in &self.plan.blocks {
             let group = GROUPS[block.group as usize];
             let (number, ty) = (block.binding, joined(group, "Params"));
-            let _ = writeln!(out, "\n@group({}) @binding({number}) var<uniform> {group}_params: {ty};", block.group);
+            let _ = writeln!(
+                out,
+                "\n@group({}) @binding({number}) var<uniform> {group}_params: {ty};",
+                block.group
+            );
         }
     }
 
@@ -147,10 +174,16 @@ impl Writer<'_> {
         match unit.origin(name) {
             Some(Origin::Param(param)) => {
                 if let Some(value) = unit.needs.constants.get(param) {
-                    return Some((ItemKind::Constant, format!("const {emitted}: {} = {};\n", typed_wgsl(value), value.wgsl())));
+                    return Some((
+                        ItemKind::Constant,
+                        format!("const {emitted}: {} = {};\n", typed_wgsl(value), value.wgsl()),
+                    ));
                 }
                 let (declared, default) = unit.needs.overrides.get(param)?;
-                Some((ItemKind::Override, format!("override {emitted}: {} = {};\n", wgsl_type(declared.ty), default.wgsl())))
+                Some((
+                    ItemKind::Override,
+                    format!("override {emitted}: {} = {};\n", wgsl_type(declared.ty), default.wgsl()),
+                ))
             }
             Some(Origin::Instances) if name == "Instance" => {
                 Some((ItemKind::Struct, crate::parse::fields_struct(&emitted, &unit.needs.instances)))
@@ -159,7 +192,10 @@ impl Writer<'_> {
                 let declared = plan.shared_home(home);
                 self.want(declared, "Instance");
                 let ty = plan.names.get(&(declared, "Instance".to_owned()))?;
-                Some((ItemKind::Variable, format!("{}var<storage, read> {emitted}: array<{ty}>;\n", self.binding(home, name)?)))
+                Some((
+                    ItemKind::Variable,
+                    format!("{}var<storage, read> {emitted}: array<{ty}>;\n", self.binding(home, name)?),
+                ))
             }
             Some(Origin::Own) => {
                 let item = unit.scan.item(name).filter(|i| i.kind != ItemKind::Function)?;
@@ -184,15 +220,29 @@ impl Writer<'_> {
 
     fn binding(&self, home: usize, name: &str) -> Option<String> {
         let unit = &self.plan.homes[home].unit;
-        let global = self.plan.globals.iter().find(|g| g.home == home && unit.ir.global_variables[g.handle].name.as_deref() == Some(name))?;
+        let global = self
+            .plan
+            .globals
+            .iter()
+            .find(|g| g.home == home && unit.ir.global_variables[g.handle].name.as_deref() == Some(name))?;
         let (group, binding) = global.binding?;
         Some(format!("@group({group}) @binding({binding}) "))
     }
 
     fn dead_members(&self, (declared, name): (usize, &str), home: usize, item: &Item, edits: &mut Vec<Edit>) {
         let unit = &self.plan.homes[home].unit;
-        let key = StructKey { interface: None, name: name.to_owned() };
-        let Some(id) = self.plan.structs.named(declared, name).filter(|_| !unit.fixed_structs.contains(&key)) else { return };
+        let key = StructKey {
+            interface: None,
+            name: name.to_owned(),
+        };
+        let Some(id) = self
+            .plan
+            .structs
+            .named(declared, name)
+            .filter(|_| !unit.fixed_structs.contains(&key))
+        else {
+            return;
+        };
         let text = &unit.file.text;
         for (index, field) in item.fields.iter().enumerate() {
             if self.plan.structs.is_live(id, index as u32) {
@@ -214,7 +264,9 @@ impl Writer<'_> {
         if let Body::Combined { stub, rule, slot, .. } = &planned.body {
             return self.combined(planned, *stub, *rule, slot);
         }
-        let Some(item) = unit.scan.item(planned.source_name(&plan.homes)) else { return String::new() };
+        let Some(item) = unit.scan.item(planned.source_name(&plan.homes)) else {
+            return String::new();
+        };
         let dead = dead_text(plan, planned, item);
         let mut edits = self.references(planned.home, item, Some((planned, &dead)));
         edits.push((item.name_span.clone(), planned.name.clone()));
@@ -222,7 +274,11 @@ impl Writer<'_> {
         let mut text = String::new();
         let line = unit.file.position(item.span.start).line;
         let place = home.instance.map_or_else(String::new, |i| {
-            let paths: Vec<&str> = plan.instances.list[i].nodes.iter().map(|&n| plan.tree.nodes[n].path.as_str()).collect();
+            let paths: Vec<&str> = plan.instances.list[i]
+                .nodes
+                .iter()
+                .map(|&n| plan.tree.nodes[n].path.as_str())
+                .collect();
             format!(" at {}", paths.join(", "))
         });
         let _ = writeln!(text, "// {}:{line}{place}", unit.file.name);
@@ -261,8 +317,14 @@ impl Writer<'_> {
             }
         };
         self.signature_types(planned.home, header);
-        let place = plan.homes[planned.home].instance.map_or("", |i| plan.tree.nodes[plan.instances.list[i].node].path.as_str());
-        format!("// {place}.{slot}: {rule:?} of {}\nfn {}({parameters} {{\n    return {body};\n}}\n", calls.len(), planned.name)
+        let place = plan.homes[planned.home]
+            .instance
+            .map_or("", |i| plan.tree.nodes[plan.instances.list[i].node].path.as_str());
+        format!(
+            "// {place}.{slot}: {rule:?} of {}\nfn {}({parameters} {{\n    return {body};\n}}\n",
+            calls.len(),
+            planned.name
+        )
     }
 
     /// The structs that a signature names.

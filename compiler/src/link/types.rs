@@ -56,13 +56,25 @@ impl Linker<'_> {
         let declared = &ir.types[handle];
         let Some(id) = plan.structs.id(home, handle) else {
             // Of the language, or the unit's own `Params`: kept as it is.
-            let members = members.iter().map(|m| StructMember { ty: self.ty(home, m.ty), ..m.clone() }).collect();
+            let members = members
+                .iter()
+                .map(|m| StructMember {
+                    ty: self.ty(home, m.ty),
+                    ..m.clone()
+                })
+                .collect();
             let span_bytes = match declared.inner {
                 TypeInner::Struct { span, .. } => span,
                 _ => 0,
             };
             let inner = TypeInner::Struct { members, span: span_bytes };
-            let done = self.out.types.insert(Type { name: declared.name.clone(), inner }, span);
+            let done = self.out.types.insert(
+                Type {
+                    name: declared.name.clone(),
+                    inner,
+                },
+                span,
+            );
             self.predeclare(home, handle, done);
             return done;
         };
@@ -74,13 +86,25 @@ impl Linker<'_> {
             .filter(|&(index, _)| plan.structs.is_live(id, index as u32))
             .map(|(_, m)| m.clone())
             .collect();
-        let members: Vec<StructMember> = kept.into_iter().map(|m| StructMember { ty: self.ty(home, m.ty), ..m }).collect();
+        let members: Vec<StructMember> = kept
+            .into_iter()
+            .map(|m| StructMember {
+                ty: self.ty(home, m.ty),
+                ..m
+            })
+            .collect();
         if s.fixed {
             let span_bytes = match declared.inner {
                 TypeInner::Struct { span, .. } => span,
                 _ => 0,
             };
-            return self.out.types.insert(Type { name: Some(name), inner: TypeInner::Struct { members, span: span_bytes } }, span);
+            return self.out.types.insert(
+                Type {
+                    name: Some(name),
+                    inner: TypeInner::Struct { members, span: span_bytes },
+                },
+                span,
+            );
         }
         self.insert_struct(Some(name), members, span)
     }
@@ -97,7 +121,10 @@ impl Linker<'_> {
             end = member.offset + layout.size;
             align = align.max(layout.alignment);
         }
-        let inner = TypeInner::Struct { members, span: align.round_up(end) };
+        let inner = TypeInner::Struct {
+            members,
+            span: align.round_up(end),
+        };
         self.out.types.insert(Type { name, inner }, span)
     }
 
@@ -110,7 +137,11 @@ impl Linker<'_> {
     /// The types of results of `modf`, `frexp` and `atomicCompareExchangeWeak` are known to the backends by kind.
     fn predeclare(&mut self, home: usize, handle: Handle<Type>, done: Handle<Type>) {
         let special = &self.plan.homes[home].unit.ir.special_types;
-        let found: Option<PredeclaredType> = special.predeclared_types.iter().find(|&(_, &ty)| ty == handle).map(|(key, _)| copy(key));
+        let found: Option<PredeclaredType> = special
+            .predeclared_types
+            .iter()
+            .find(|&(_, &ty)| ty == handle)
+            .map(|(key, _)| copy(key));
         if let Some(key) = found {
             self.out.special_types.predeclared_types.insert(key, done);
         }

@@ -14,10 +14,13 @@ use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 pub fn before_parsing(file: &Arc<SourceFile>, scan: &Scan, interface: bool) -> Result<(), Report> {
     for item in &scan.items {
         if interface && item.kind == ItemKind::Constant && !item.typed {
-            return Err(Diagnostic::new(codes::UNTYPED_CONSTANT, format!("the interface's constant `{}` has no type", item.name))
-                .at(file, item.name_span.clone(), "a type is missing behind this name")
-                .note("an untyped constant is folded away where it is parsed, so modules could not share it: write `const NAME: f32 = ...`")
-                .into());
+            return Err(Diagnostic::new(
+                codes::UNTYPED_CONSTANT,
+                format!("the interface's constant `{}` has no type", item.name),
+            )
+            .at(file, item.name_span.clone(), "a type is missing behind this name")
+            .note("an untyped constant is folded away where it is parsed, so modules could not share it: write `const NAME: f32 = ...`")
+            .into());
         }
         if item.kind == ItemKind::Variable {
             explicit_binding(file, scan, item)?;
@@ -30,10 +33,12 @@ fn explicit_binding(file: &Arc<SourceFile>, scan: &Scan, item: &Item) -> Result<
     for pair in scan.tokens[item.tokens.clone()].windows(2) {
         let word = &file.text[pair[1].range()];
         if pair[0].is(b'@') && matches!(word, "group" | "binding") {
-            return Err(Diagnostic::new(codes::EXPLICIT_BINDING, format!("`{}` has a fixed @{word}", item.name))
-                .at(file, pair[0].start as usize..pair[1].end as usize, "the linker numbers bindings")
-                .note("leave @group and @binding out; `group` of the resource in module.ron chooses the bind group")
-                .into());
+            return Err(
+                Diagnostic::new(codes::EXPLICIT_BINDING, format!("`{}` has a fixed @{word}", item.name))
+                    .at(file, pair[0].start as usize..pair[1].end as usize, "the linker numbers bindings")
+                    .note("leave @group and @binding out; `group` of the resource in module.ron chooses the bind group")
+                    .into(),
+            );
         }
     }
     Ok(())
@@ -89,17 +94,27 @@ fn locations_in_structs(unit: &Unit, entry: &naga::EntryPoint) -> Result<(), Rep
     }
     let item = unit.scan.item(&entry.name);
     let span = item.map_or(0..0, |i| i.name_span.clone());
-    Err(Diagnostic::new(codes::ENTRY_POINT_IO, format!("the entry point `{}` has a @location outside a struct", entry.name))
-        .at(&unit.file, span, "in the parameters or the result of this function")
-        .note("put inputs and outputs with @location into a struct, so that those nobody reads can be left out")
-        .into())
+    Err(Diagnostic::new(
+        codes::ENTRY_POINT_IO,
+        format!("the entry point `{}` has a @location outside a struct", entry.name),
+    )
+    .at(&unit.file, span, "in the parameters or the result of this function")
+    .note("put inputs and outputs with @location into a struct, so that those nobody reads can be left out")
+    .into())
 }
 
 /// Every function of the interface is there, with the interface's signature.
 pub fn against_interface(unit: &Unit, interface: &Interface, declared: &Unit) -> Result<(), Report> {
     let offers = &interface.category.manifest.offers;
-    for item in interface.scan.items.iter().filter(|i| i.kind == ItemKind::Function && !offers.contains(&i.name)) {
-        let Some(&expected) = declared.functions.get(&item.name) else { continue };
+    for item in interface
+        .scan
+        .items
+        .iter()
+        .filter(|i| i.kind == ItemKind::Function && !offers.contains(&i.name))
+    {
+        let Some(&expected) = declared.functions.get(&item.name) else {
+            continue;
+        };
         require(unit, interface, item, declared, expected, true)?;
     }
     Ok(())
@@ -121,7 +136,10 @@ pub fn require(
         }
         return Err(Diagnostic::new(
             codes::MISSING_FUNCTION,
-            format!("the module does not define `{}` of the interface `{}`", item.name, interface.category.name),
+            format!(
+                "the module does not define `{}` of the interface `{}`",
+                item.name, interface.category.name
+            ),
         )
         .at(&unit.file, 0..0, "in this file")
         .at(&interface.file, header(interface, item), "declared here")
@@ -132,10 +150,20 @@ pub fn require(
     }
     let found_text = one_line(&unit.file.text[own.span.start..body_start(&unit.scan, own)]);
     let expected_text = one_line(&interface.file.text[header(interface, item)]);
-    Err(Diagnostic::new(codes::SIGNATURE_MISMATCH, format!("`{}` has another signature than the interface `{}` says", item.name, interface.category.name))
-        .at(&unit.file, own.span.start..body_start(&unit.scan, own), format!("found `{found_text}`"))
-        .at(&interface.file, header(interface, item), format!("expected `{expected_text}`"))
-        .into())
+    Err(Diagnostic::new(
+        codes::SIGNATURE_MISMATCH,
+        format!(
+            "`{}` has another signature than the interface `{}` says",
+            item.name, interface.category.name
+        ),
+    )
+    .at(
+        &unit.file,
+        own.span.start..body_start(&unit.scan, own),
+        format!("found `{found_text}`"),
+    )
+    .at(&interface.file, header(interface, item), format!("expected `{expected_text}`"))
+    .into())
 }
 
 fn header(interface: &Interface, item: &Item) -> Range<usize> {
@@ -164,7 +192,10 @@ pub fn same_signature(
         return Ok(());
     }
     let place = |unit: &Unit, handle| unit.locate(unit.ir.functions.get_span(handle)).map(|(f, s)| (Arc::clone(f), s));
-    let mut diagnostic = Diagnostic::new(codes::SIGNATURE_MISMATCH, format!("`{name}` is offered with another signature than it is called with"));
+    let mut diagnostic = Diagnostic::new(
+        codes::SIGNATURE_MISMATCH,
+        format!("`{name}` is offered with another signature than it is called with"),
+    );
     if let Some((file, span)) = place(unit, offered) {
         diagnostic = diagnostic.at(&file, span.start..header_end(&file.text, &span), "found this");
     }
@@ -176,12 +207,17 @@ pub fn same_signature(
 
 /// Where the header of a function's text ends.
 fn header_end(text: &str, span: &Range<usize>) -> usize {
-    text.get(span.clone()).and_then(|t| t.find('{')).map_or(span.end, |brace| span.start + text[span.start..span.start + brace].trim_end().len())
+    text.get(span.clone())
+        .and_then(|t| t.find('{'))
+        .map_or(span.end, |brace| span.start + text[span.start..span.start + brace].trim_end().len())
 }
 
 fn equal_signatures(a_unit: &Unit, a: &naga::Function, b_unit: &Unit, b: &naga::Function) -> bool {
     a.arguments.len() == b.arguments.len()
-        && a.arguments.iter().zip(&b.arguments).all(|(x, y)| same_type(a_unit, x.ty, b_unit, y.ty))
+        && a.arguments
+            .iter()
+            .zip(&b.arguments)
+            .all(|(x, y)| same_type(a_unit, x.ty, b_unit, y.ty))
         && match (&a.result, &b.result) {
             (Some(x), Some(y)) => same_type(a_unit, x.ty, b_unit, y.ty),
             (None, None) => true,
@@ -198,9 +234,18 @@ pub fn same_type(a_unit: &Unit, a: Handle<naga::Type>, b_unit: &Unit, b: Handle<
             (None, None) => a_unit.ir.types[a].name == b_unit.ir.types[b].name,
             _ => false,
         },
-        (TypeInner::Array { base: p, size: s, stride: t }, TypeInner::Array { base: q, size: u, stride: v }) => {
-            s == u && t == v && same_type(a_unit, *p, b_unit, *q)
-        }
+        (
+            TypeInner::Array {
+                base: p,
+                size: s,
+                stride: t,
+            },
+            TypeInner::Array {
+                base: q,
+                size: u,
+                stride: v,
+            },
+        ) => s == u && t == v && same_type(a_unit, *p, b_unit, *q),
         (TypeInner::Pointer { base: p, space: s }, TypeInner::Pointer { base: q, space: u }) => s == u && same_type(a_unit, *p, b_unit, *q),
         (TypeInner::Array { .. } | TypeInner::Pointer { .. } | TypeInner::Struct { .. }, _) => false,
         _ => x == y,

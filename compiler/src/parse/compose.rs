@@ -147,7 +147,11 @@ pub fn typed_wgsl(value: &Typed) -> &'static str {
 pub fn fields_struct(name: &str, fields: &IndexMap<String, Param>) -> String {
     let mut text = format!("struct {name} {{\n");
     for (field, param) in fields {
-        let unit = if param.unit.is_empty() || param.unit == "1" { String::new() } else { format!(" [{}]", param.unit) };
+        let unit = if param.unit.is_empty() || param.unit == "1" {
+            String::new()
+        } else {
+            format!(" [{}]", param.unit)
+        };
         if !param.doc.is_empty() || !unit.is_empty() {
             // Infallible: writing to a string.
             let _ = writeln!(text, "    /// {}{unit}", param.doc.replace('\n', " "));
@@ -176,10 +180,24 @@ pub fn compose(
     interfaces: &dyn Fn(&str) -> Result<Arc<Interface>, Report>,
 ) -> Result<Composed, Report> {
     let own = author.text.len();
-    let mut out = Composed { text: author.text.clone(), own, names: HashMap::new(), segments: Vec::new() };
-    out.segments.push(Segment { range: 0..own + 1, file: Arc::clone(author), start: 0 });
+    let mut out = Composed {
+        text: author.text.clone(),
+        own,
+        names: HashMap::new(),
+        segments: Vec::new(),
+    };
+    out.segments.push(Segment {
+        range: 0..own + 1,
+        file: Arc::clone(author),
+        start: 0,
+    });
     out.text.push('\n');
-    let mut composer = Composer { out, author, scan, interfaces };
+    let mut composer = Composer {
+        out,
+        author,
+        scan,
+        interfaces,
+    };
     composer.own_names()?;
     composer.params(needs)?;
     composer.interfaces(needs)?;
@@ -191,10 +209,12 @@ impl Composer<'_> {
         for item in self.scan.items.iter().filter(|i| !i.name.is_empty()) {
             if self.out.names.insert(item.name.clone(), Origin::Own).is_some() {
                 let first = self.scan.item(&item.name).map_or(0..0, |i| i.name_span.clone());
-                return Err(Diagnostic::new(codes::DUPLICATE_SYMBOL, format!("`{}` is declared twice", item.name))
-                    .at(self.author, item.name_span.clone(), "declared again here")
-                    .at(self.author, first, "first declared here")
-                    .into());
+                return Err(
+                    Diagnostic::new(codes::DUPLICATE_SYMBOL, format!("`{}` is declared twice", item.name))
+                        .at(self.author, item.name_span.clone(), "declared again here")
+                        .at(self.author, first, "first declared here")
+                        .into(),
+                );
             }
         }
         Ok(())
@@ -202,18 +222,21 @@ impl Composer<'_> {
 
     fn claim(&mut self, name: &str, origin: Origin, what: &str) -> Result<(), Report> {
         if let Some(item) = self.scan.item(name) {
-            return Err(Diagnostic::new(codes::DUPLICATE_SYMBOL, format!("`{name}` is declared here and is also {what}"))
-                .at(self.author, item.name_span.clone(), "declared here")
-                .note("give the module's own item another name, or the slot a `prefix`")
-                .into());
+            return Err(
+                Diagnostic::new(codes::DUPLICATE_SYMBOL, format!("`{name}` is declared here and is also {what}"))
+                    .at(self.author, item.name_span.clone(), "declared here")
+                    .note("give the module's own item another name, or the slot a `prefix`")
+                    .into(),
+            );
         }
         match self.out.names.insert(name.to_owned(), origin.clone()) {
-            Some(other) if other != origin => {
-                Err(Diagnostic::new(codes::DUPLICATE_SYMBOL, format!("`{name}` is {what} and something else too"))
-                    .at(self.author, 0..0, "in what this module calls")
-                    .note("give one of the slots a `prefix` in module.ron")
-                    .into())
-            }
+            Some(other) if other != origin => Err(Diagnostic::new(
+                codes::DUPLICATE_SYMBOL,
+                format!("`{name}` is {what} and something else too"),
+            )
+            .at(self.author, 0..0, "in what this module calls")
+            .note("give one of the slots a `prefix` in module.ron")
+            .into()),
             _ => Ok(()),
         }
     }
@@ -221,11 +244,21 @@ impl Composer<'_> {
     fn params(&mut self, needs: &Needs) -> Result<(), Report> {
         for (name, value) in &needs.constants {
             self.claim(&constant_name(name), Origin::Param(name.clone()), "a parameter's constant")?;
-            self.add(&format!("const {}: {} = {};\n", constant_name(name), typed_wgsl(value), value.wgsl()));
+            self.add(&format!(
+                "const {}: {} = {};\n",
+                constant_name(name),
+                typed_wgsl(value),
+                value.wgsl()
+            ));
         }
         for (name, (param, default)) in &needs.overrides {
             self.claim(&constant_name(name), Origin::Param(name.clone()), "a parameter's override")?;
-            self.add(&format!("override {}: {} = {};\n", constant_name(name), wgsl_type(param.ty), default.wgsl()));
+            self.add(&format!(
+                "override {}: {} = {};\n",
+                constant_name(name),
+                wgsl_type(param.ty),
+                default.wgsl()
+            ));
         }
         if !needs.uniforms.is_empty() {
             self.claim("Params", Origin::Params, "the struct of the parameters")?;
@@ -282,7 +315,11 @@ impl Composer<'_> {
             let interface = (self.interfaces)(name)?;
             for item in &interface.scan.items {
                 if item.kind != ItemKind::Function && !item.name.is_empty() {
-                    self.claim(&item.name, Origin::Interface(name.clone()), &format!("declared by the interface `{name}`"))?;
+                    self.claim(
+                        &item.name,
+                        Origin::Interface(name.clone()),
+                        &format!("declared by the interface `{name}`"),
+                    )?;
                     self.copy(&interface.file, item.span.clone());
                 }
             }
@@ -310,9 +347,21 @@ impl Composer<'_> {
     fn slot(&mut self, slot: &SlotNeed) -> Result<(), Report> {
         let interface = (self.interfaces)(&slot.interface)?;
         let offers = &interface.category.manifest.offers;
-        for item in interface.scan.items.iter().filter(|i| i.kind == ItemKind::Function && !offers.contains(&i.name)) {
-            let origin = Origin::Slot { slot: slot.name.clone(), function: item.name.clone() };
-            self.claim(&format!("{}{}", slot.prefix, item.name), origin, &format!("a function of the slot `{}`", slot.name))?;
+        for item in interface
+            .scan
+            .items
+            .iter()
+            .filter(|i| i.kind == ItemKind::Function && !offers.contains(&i.name))
+        {
+            let origin = Origin::Slot {
+                slot: slot.name.clone(),
+                function: item.name.clone(),
+            };
+            self.claim(
+                &format!("{}{}", slot.prefix, item.name),
+                origin,
+                &format!("a function of the slot `{}`", slot.name),
+            )?;
             self.copy(&interface.file, item.span.start..item.name_span.start);
             self.add(&slot.prefix);
             self.copy(&interface.file, item.name_span.start..item.span.end);
@@ -331,7 +380,10 @@ impl Composer<'_> {
             for used in closure {
                 let interface = (self.interfaces)(used)?;
                 if let Some(item) = interface.scan.item(name).filter(|i| i.kind == ItemKind::Function) {
-                    let origin = Origin::Offered { interface: used.clone(), function: name.clone() };
+                    let origin = Origin::Offered {
+                        interface: used.clone(),
+                        function: name.clone(),
+                    };
                     self.claim(name, origin, "a function that the owner of the slot offers")?;
                     self.copy(&interface.file, item.span.clone());
                     break;
@@ -350,7 +402,11 @@ impl Composer<'_> {
         let Some(text) = file.text.get(span.clone()) else { return };
         self.out.text.push_str(text);
         self.out.text.push('\n');
-        self.out.segments.push(Segment { range: start..start + text.len(), file: Arc::clone(file), start: span.start });
+        self.out.segments.push(Segment {
+            range: start..start + text.len(),
+            file: Arc::clone(file),
+            start: span.start,
+        });
     }
 }
 

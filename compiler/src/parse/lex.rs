@@ -76,7 +76,11 @@ pub fn lex(text: &str) -> Vec<Token> {
                 Kind::Mark(byte)
             }
         };
-        tokens.push(Token { kind, start: start as u32, end: at as u32 });
+        tokens.push(Token {
+            kind,
+            start: start as u32,
+            end: at as u32,
+        });
     }
     tokens
 }
@@ -88,7 +92,9 @@ fn is_word_byte(byte: u8) -> bool {
 
 /// `.5` right after a value would be a member access, which no digit can follow: never a number there.
 fn follows_value(tokens: &[Token], start: usize) -> bool {
-    tokens.last().is_some_and(|t| t.end as usize == start && (t.kind == Kind::Word || t.is(b')') || t.is(b']')))
+    tokens
+        .last()
+        .is_some_and(|t| t.end as usize == start && (t.kind == Kind::Word || t.is(b')') || t.is(b']')))
 }
 
 fn line_end(bytes: &[u8], from: usize) -> usize {
@@ -120,7 +126,11 @@ fn number_end(bytes: &[u8], from: usize) -> usize {
     let mut at = from;
     while at < bytes.len() {
         let byte = bytes[at];
-        let exponent = if hex { matches!(byte, b'p' | b'P') } else { matches!(byte, b'e' | b'E') };
+        let exponent = if hex {
+            matches!(byte, b'p' | b'P')
+        } else {
+            matches!(byte, b'e' | b'E')
+        };
         if exponent && matches!(bytes.get(at + 1), Some(b'+' | b'-')) {
             at += 2;
         } else if byte.is_ascii_alphanumeric() || byte == b'.' {

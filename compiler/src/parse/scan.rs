@@ -94,7 +94,10 @@ impl Scan {
 
     /// Bytes of a range of tokens; empty for an empty range.
     pub fn bytes(&self, tokens: &Range<usize>) -> Range<usize> {
-        match (self.tokens.get(tokens.start), tokens.end.checked_sub(1).and_then(|last| self.tokens.get(last))) {
+        match (
+            self.tokens.get(tokens.start),
+            tokens.end.checked_sub(1).and_then(|last| self.tokens.get(last)),
+        ) {
             (Some(first), Some(last)) if first.start <= last.start => first.start as usize..last.end as usize,
             _ => 0..0,
         }
@@ -274,7 +277,11 @@ fn fields(text: &str, tokens: &[Token], range: Range<usize>) -> Vec<Field> {
         let ends = at == range.end || (depth == 0 && angle == 0 && tokens[at].is(b','));
         if ends {
             if let Some((name_at, name)) = keyword_at(text, tokens, first).filter(|&(n, _)| n < at) {
-                fields.push(Field { name: name.to_owned(), tokens: first..at, ty: (name_at + 2).min(at)..at });
+                fields.push(Field {
+                    name: name.to_owned(),
+                    tokens: first..at,
+                    ty: (name_at + 2).min(at)..at,
+                });
             }
             first = at + 1;
             continue;
@@ -304,28 +311,46 @@ fn attribute_range(field: &Field, tokens: &[Token]) -> Range<usize> {
 
 /// Words of a stretch without declarations that refer to names outside.
 fn references(text: &str, tokens: &[Token], range: Range<usize>, out: &mut Vec<Reference>) {
-    let mut walker = Walker { text, tokens, out, locals: None };
+    let mut walker = Walker {
+        text,
+        tokens,
+        out,
+        locals: None,
+    };
     walker.walk(range);
 }
 
 fn scan_function(text: &str, tokens: &[Token], name_at: usize, item: &mut Item) {
     let range = item.tokens.clone();
-    let Some(close) = closing(tokens, name_at + 1).filter(|&c| c < range.end) else { return };
-    references(text, tokens, range.start..name_at, &mut item.references);
+    let Some(close) = closing(tokens, name_at + 1).filter(|&c| c < range.end) else {
+        return;
+    };
+    // The attributes; the word before the name is `fn`.
+    references(text, tokens, range.start..name_at - 1, &mut item.references);
     item.fields = fields(text, tokens, name_at + 2..close);
     for field in item.fields.clone() {
         references(text, tokens, attribute_range(&field, tokens), &mut item.references);
         references(text, tokens, field.ty, &mut item.references);
         item.locals.insert(field.name);
     }
-    let Some(open) = (close + 1..range.end).find(|&at| tokens[at].is(b'{')) else { return };
+    let Some(open) = (close + 1..range.end).find(|&at| tokens[at].is(b'{')) else {
+        return;
+    };
     item.body = open..range.end;
     if tokens[close + 1].is(b'-') {
         item.result = close + 3..open;
         references(text, tokens, item.result.clone(), &mut item.references);
     }
-    let mut locals = Locals { scopes: vec![item.fields.iter().map(|f| f.name.clone()).collect()], all: std::mem::take(&mut item.locals) };
-    let mut walker = Walker { text, tokens, out: &mut item.references, locals: Some(&mut locals) };
+    let mut locals = Locals {
+        scopes: vec![item.fields.iter().map(|f| f.name.clone()).collect()],
+        all: std::mem::take(&mut item.locals),
+    };
+    let mut walker = Walker {
+        text,
+        tokens,
+        out: &mut item.references,
+        locals: Some(&mut locals),
+    };
     walker.walk(item.body.clone());
     item.locals = locals.all;
 }
@@ -452,13 +477,19 @@ mod tests {
     fn names(text: &str, item: &str) -> Vec<String> {
         let scan = scan(text);
         let item = scan.item(item).unwrap();
-        item.references.iter().map(|r| text[scan.tokens[r.token].range()].to_owned()).collect()
+        item.references
+            .iter()
+            .map(|r| text[scan.tokens[r.token].range()].to_owned())
+            .collect()
     }
 
     #[test]
     fn locals_shadow_only_after_their_statement_and_inside_their_scope() {
         let text = "fn f(a: f32) -> f32 { let b = b(a); if true { let c = b; } for (var i = i0; i < n; i++) { d(i); } return c.x + i; }";
-        let refs: Vec<_> = names(text, "f").into_iter().filter(|n| !matches!(n.as_str(), "f32" | "if" | "true" | "return")).collect();
+        let refs: Vec<_> = names(text, "f")
+            .into_iter()
+            .filter(|n| !matches!(n.as_str(), "f32" | "if" | "true" | "return"))
+            .collect();
         assert_eq!(refs, ["b", "i0", "n", "d", "c", "i"]);
     }
 
@@ -475,7 +506,10 @@ mod tests {
         let scan = scan(text);
         let g = scan.item("g").unwrap();
         assert_eq!(&text[g.doc_start..g.doc_start + 7], "/// one");
-        assert_eq!(g.fields.iter().map(|f| &text[scan.bytes(&f.ty)]).collect::<Vec<_>>(), ["array<f32, 3>", "f32"]);
+        assert_eq!(
+            g.fields.iter().map(|f| &text[scan.bytes(&f.ty)]).collect::<Vec<_>>(),
+            ["array<f32, 3>", "f32"]
+        );
         assert_eq!(&text[scan.bytes(&g.result)], "@location(0) vec4f");
         assert!(!scan.item("A").unwrap().typed);
     }

@@ -64,13 +64,7 @@ impl Unit {
 ///
 /// # Errors
 /// The text is no WGSL, has a type error, or breaks a rule for modules.
-pub fn parse_unit(
-    file: Arc<SourceFile>,
-    scan: Scan,
-    composed: Composed,
-    needs: Needs,
-    interface: Option<String>,
-) -> Result<Unit, Report> {
+pub fn parse_unit(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, interface: Option<String>) -> Result<Unit, Report> {
     checks::before_parsing(&file, &scan, interface.is_some())?;
     let unit = index(file, scan, composed, needs, interface)?;
     checks::after_parsing(&unit)?;
@@ -83,7 +77,9 @@ pub fn parse_unit(
 /// The text is no WGSL, or has a type error.
 pub fn parse_whole(file: Arc<SourceFile>) -> Result<Unit, Report> {
     let scan = super::scan::scan(&file.text);
-    let composed = compose(&file, &scan, &Needs::default(), &|_| Err(Diagnostic::new(codes::UNKNOWN_INTERFACE, "none here").into()))?;
+    let composed = compose(&file, &scan, &Needs::default(), &|_| {
+        Err(Diagnostic::new(codes::UNKNOWN_INTERFACE, "none here").into())
+    })?;
     index(file, scan, composed, Needs::default(), None)
 }
 
@@ -153,9 +149,15 @@ fn label(diagnostic: Diagnostic, file: &Arc<SourceFile>, composed: &Composed, sp
 }
 
 fn validation_error(file: &Arc<SourceFile>, composed: &Composed, error: &naga::WithSpan<naga::valid::ValidationError>) -> Report {
-    let mut diagnostic = Diagnostic::new(codes::WGSL_TYPE, chain(error.as_inner()));
+    let message = chain(error.as_inner());
+    let types_differ = message.contains("doesn't match the type");
+    let mut diagnostic = Diagnostic::new(codes::WGSL_TYPE, message);
     for (span, text) in error.spans() {
         diagnostic = label(diagnostic, file, composed, *span, text);
+    }
+    if types_differ && composed.text.contains("alias ") {
+        diagnostic = diagnostic
+            .note("naga takes an array of an alias for another type than an array of what the alias stands for: spell both alike");
     }
     diagnostic.into()
 }
@@ -175,21 +177,34 @@ pub fn chain(error: &dyn std::error::Error) -> String {
 fn named_structs(ir: &naga::Module, composed: &Composed) -> HashMap<Handle<naga::Type>, StructKey> {
     let mut structs = HashMap::new();
     for (handle, ty) in ir.types.iter() {
-        let (TypeInner::Struct { .. }, Some(name)) = (&ty.inner, &ty.name) else { continue };
+        let (TypeInner::Struct { .. }, Some(name)) = (&ty.inner, &ty.name) else {
+            continue;
+        };
         let interface = match composed.names.get(name) {
             Some(Origin::Interface(category)) => Some(category.clone()),
             Some(_) => None,
             // Predeclared by the language.
             None => continue,
         };
-        structs.insert(handle, StructKey { interface, name: name.clone() });
+        structs.insert(
+            handle,
+            StructKey {
+                interface,
+                name: name.clone(),
+            },
+        );
     }
     structs
 }
 
 fn fixed_structs(unit: &Unit) -> HashSet<StructKey> {
     let mut fixed = HashSet::new();
-    let shared = unit.ir.global_variables.iter().filter(|(_, g)| g.space != naga::AddressSpace::Private).map(|(_, g)| g.ty);
+    let shared = unit
+        .ir
+        .global_variables
+        .iter()
+        .filter(|(_, g)| g.space != naga::AddressSpace::Private)
+        .map(|(_, g)| g.ty);
     // A constant of a struct type is composed at module scope, where nothing is trimmed.
     let composed = unit.ir.global_expressions.iter().filter_map(|(_, e)| match *e {
         naga::Expression::Compose { ty, .. } | naga::Expression::ZeroValue(ty) => Some(ty),

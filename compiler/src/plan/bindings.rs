@@ -68,7 +68,11 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
     for group in 0..GROUPS.len() as u32 {
         let members = block_members(catalog, plan, group);
         if !members.is_empty() {
-            plan.blocks.push(Block { group, binding: 0, members });
+            plan.blocks.push(Block {
+                group,
+                binding: 0,
+                members,
+            });
             next[group as usize] = 1;
         }
     }
@@ -117,7 +121,12 @@ pub fn declaring(plan: &Plan, home: usize, global: Handle<GlobalVariable>) -> (u
     if let Some(Origin::Interface(category)) = unit.origin(name) {
         let declared = plan.homes.iter().position(|h| h.unit.interface.as_ref() == Some(category));
         if let Some(interface) = declared {
-            let found = plan.homes[interface].unit.ir.global_variables.iter().find(|(_, g)| g.name.as_deref() == Some(name));
+            let found = plan.homes[interface]
+                .unit
+                .ir
+                .global_variables
+                .iter()
+                .find(|(_, g)| g.name.as_deref() == Some(name));
             if let Some((handle, _)) = found {
                 return (interface, handle);
             }
@@ -136,7 +145,12 @@ fn block_members(catalog: &Catalog, plan: &Plan, group: u32) -> Vec<BlockMember>
         for (position, param) in plan.homes[index].unit.needs.uniforms.keys().enumerate() {
             if plan.live_params.contains(&(index, position as u32)) {
                 let name = format!("{}_{param}", instance.name);
-                members.push(BlockMember { home: index, index: position as u32, param: param.clone(), name });
+                members.push(BlockMember {
+                    home: index,
+                    index: position as u32,
+                    param: param.clone(),
+                    name,
+                });
             }
         }
     }
@@ -146,8 +160,16 @@ fn block_members(catalog: &Catalog, plan: &Plan, group: u32) -> Vec<BlockMember>
 /// What a home's manifest says of a variable.
 pub fn declared<'c>(catalog: &'c Catalog, plan: &'c Plan, home: usize, name: &str) -> Option<&'c Resource> {
     match plan.homes[home].instance {
-        Some(instance) => plan.tree.nodes[plan.instances.list[instance].node].module.manifest.resources.get(name),
-        None => catalog.category(plan.homes[home].unit.interface.as_deref()?)?.manifest.resources.get(name),
+        Some(instance) => plan.tree.nodes[plan.instances.list[instance].node]
+            .module
+            .manifest
+            .resources
+            .get(name),
+        None => catalog
+            .category(plan.homes[home].unit.interface.as_deref()?)?
+            .manifest
+            .resources
+            .get(name),
     }
 }
 
@@ -164,10 +186,13 @@ fn group_of(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVa
     }
     let Some(resource) = declared(catalog, plan, home, name) else {
         let span = unit.scan.item(name).map_or(0..0, |i| i.name_span.clone());
-        return Err(Diagnostic::new(codes::UNDECLARED_RESOURCE, format!("the manifest does not declare the resource `{name}`"))
-            .at(&unit.file, span, "declared here, but not under `resources`")
-            .note("the host must know how to fill it: add it to `resources` of the manifest beside this file")
-            .into());
+        return Err(Diagnostic::new(
+            codes::UNDECLARED_RESOURCE,
+            format!("the manifest does not declare the resource `{name}`"),
+        )
+        .at(&unit.file, span, "declared here, but not under `resources`")
+        .note("the host must know how to fill it: add it to `resources` of the manifest beside this file")
+        .into());
     };
     Ok(resource.group.unwrap_or(group))
 }

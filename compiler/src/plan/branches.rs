@@ -31,8 +31,15 @@ pub fn choice(ir: &naga::Module, function: &naga::Function, condition: Handle<Ex
 }
 
 /// The statements of a block that can be reached: a branch that is always taken and leaves the block ends it.
-pub fn reachable<'b>(ir: &naga::Module, function: &naga::Function, block: &'b Block) -> impl Iterator<Item = (&'b Statement, &'b naga::Span)> {
-    let end = block.iter().position(|s| leaves(ir, function, s)).map_or(block.len(), |last| last + 1);
+pub fn reachable<'b>(
+    ir: &naga::Module,
+    function: &naga::Function,
+    block: &'b Block,
+) -> impl Iterator<Item = (&'b Statement, &'b naga::Span)> {
+    let end = block
+        .iter()
+        .position(|s| leaves(ir, function, s))
+        .map_or(block.len(), |last| last + 1);
     block.span_iter().take(end)
 }
 

@@ -33,7 +33,11 @@ fn drop_unneeded(plan: &mut Plan) {
     for caller in 0..plan.functions.len() {
         let planned = &mut plan.functions[caller];
         planned.calls.retain(|_, id| needed[*id]);
-        planned.calls.values_mut().chain(&mut planned.targets).for_each(|id| *id = index[*id]);
+        planned
+            .calls
+            .values_mut()
+            .chain(&mut planned.targets)
+            .for_each(|id| *id = index[*id]);
         let mut callees: Vec<usize> = planned.calls.values().chain(&planned.targets).copied().collect();
         callees.sort_unstable();
         for callee in callees {
@@ -55,8 +59,12 @@ fn settle(plan: &mut Plan) {
                     changed |= !std::mem::replace(&mut plan.functions[target].needed, true);
                 }
             }
-            let Some(function) = plan.functions[index].ir(&plan.homes) else { continue };
-            let Some(info) = plan.functions[index].info(&plan.homes) else { continue };
+            let Some(function) = plan.functions[index].ir(&plan.homes) else {
+                continue;
+            };
+            let Some(info) = plan.functions[index].info(&plan.homes) else {
+                continue;
+            };
             let mut walker = Walker {
                 homes: &plan.homes,
                 functions: &plan.functions,
@@ -112,7 +120,8 @@ fn link_stages(plan: &mut Plan) -> bool {
         }
     }
     for (stage, id, member, binding) in outputs {
-        let unread = matches!(binding, Some(Binding::Location { location, .. }) if stage == ShaderStage::Vertex && !wanted.contains(&location));
+        let unread =
+            matches!(binding, Some(Binding::Location { location, .. }) if stage == ShaderStage::Vertex && !wanted.contains(&location));
         if !unread {
             changed |= plan.structs.enliven(id, member);
         }
@@ -123,9 +132,11 @@ fn link_stages(plan: &mut Plan) -> bool {
 fn bound_members(plan: &Plan, home: usize, ty: Handle<Type>) -> Vec<(usize, u32, Option<Binding>)> {
     let unit = &plan.homes[home].unit;
     match (&unit.ir.types[ty].inner, plan.structs.id(home, ty)) {
-        (TypeInner::Struct { members, .. }, Some(id)) => {
-            members.iter().enumerate().map(|(index, m)| (id, index as u32, m.binding.clone())).collect()
-        }
+        (TypeInner::Struct { members, .. }, Some(id)) => members
+            .iter()
+            .enumerate()
+            .map(|(index, m)| (id, index as u32, m.binding.clone()))
+            .collect(),
         _ => Vec::new(),
     }
 }
@@ -207,7 +218,13 @@ impl<'a> Walker<'a> {
     fn holds_action(&self, handle: Handle<Expression>) -> bool {
         let span = self.function.expressions.get_span(handle).to_range().unwrap_or_default();
         self.function.expressions.iter().take(handle.index() + 1).any(|(h, e)| {
-            let inside = || self.function.expressions.get_span(h).to_range().is_some_and(|s| span.start <= s.start && s.end <= span.end);
+            let inside = || {
+                self.function
+                    .expressions
+                    .get_span(h)
+                    .to_range()
+                    .is_some_and(|s| span.start <= s.start && s.end <= span.end)
+            };
             let acts = match e {
                 Expression::CallResult(callee) => !self.can_go(*callee),
                 other => is_result(other),
@@ -239,20 +256,26 @@ impl<'a> Walker<'a> {
             | Statement::ControlBarrier(_)
             | Statement::MemoryBarrier(_) => {}
             Statement::Block(inner) => self.block(inner),
-            Statement::If { condition, accept, reject } => match choice(&self.homes[self.planned.home].unit.ir, self.function, *condition) {
-                Choice::Accept => self.block(accept),
-                Choice::Reject => self.block(reject),
-                Choice::Open => {
-                    self.read(*condition);
-                    self.block(accept);
-                    self.block(reject);
+            Statement::If { condition, accept, reject } => {
+                match choice(&self.homes[self.planned.home].unit.ir, self.function, *condition) {
+                    Choice::Accept => self.block(accept),
+                    Choice::Reject => self.block(reject),
+                    Choice::Open => {
+                        self.read(*condition);
+                        self.block(accept);
+                        self.block(reject);
+                    }
                 }
-            },
+            }
             Statement::Switch { selector, cases } => {
                 self.read(*selector);
                 cases.iter().for_each(|c| self.block(&c.body));
             }
-            Statement::Loop { body, continuing, break_if } => {
+            Statement::Loop {
+                body,
+                continuing,
+                break_if,
+            } => {
                 self.block(body);
                 self.block(continuing);
                 break_if.iter().for_each(|&b| self.read(b));
@@ -269,7 +292,11 @@ impl<'a> Walker<'a> {
                 self.address(*pointer);
                 self.read(*value);
             }
-            Statement::Call { function, arguments, result } => {
+            Statement::Call {
+                function,
+                arguments,
+                result,
+            } => {
                 if self.can_go(*function) {
                     // Alive where its result is read, which is after this.
                     if let Some(result) = result {
@@ -452,7 +479,17 @@ pub fn expression_operands(expression: &Expression, visit: &mut dyn FnMut(Handle
         Expression::Splat { value, .. } => visit(*value),
         Expression::Swizzle { vector, .. } => visit(*vector),
         Expression::Load { pointer } => visit(*pointer),
-        Expression::ImageSample { image, sampler, coordinate, array_index, offset, level, depth_ref, gather: _, clamp_to_edge: _ } => {
+        Expression::ImageSample {
+            image,
+            sampler,
+            coordinate,
+            array_index,
+            offset,
+            level,
+            depth_ref,
+            gather: _,
+            clamp_to_edge: _,
+        } => {
             visit(*image);
             visit(*sampler);
             visit(*coordinate);
@@ -466,7 +503,13 @@ pub fn expression_operands(expression: &Expression, visit: &mut dyn FnMut(Handle
                 }
             }
         }
-        Expression::ImageLoad { image, coordinate, array_index, sample, level } => {
+        Expression::ImageLoad {
+            image,
+            coordinate,
+            array_index,
+            sample,
+            level,
+        } => {
             visit(*image);
             visit(*coordinate);
             array_index.iter().chain(sample).chain(level).for_each(|&h| visit(h));
@@ -509,22 +552,42 @@ pub fn expression_operands(expression: &Expression, visit: &mut dyn FnMut(Handle
 /// Operands of a statement that has no blocks and is neither store nor call.
 fn operands(statement: &Statement, visit: &mut dyn FnMut(Handle<Expression>)) {
     match statement {
-        Statement::ImageStore { image, coordinate, array_index, value } => {
+        Statement::ImageStore {
+            image,
+            coordinate,
+            array_index,
+            value,
+        } => {
             [*image, *coordinate, *value].into_iter().chain(*array_index).for_each(visit);
         }
-        Statement::Atomic { pointer, fun, value, result } => {
+        Statement::Atomic {
+            pointer,
+            fun,
+            value,
+            result,
+        } => {
             let compare = match fun {
                 naga::AtomicFunction::Exchange { compare } => *compare,
                 _ => None,
             };
             [*pointer, *value].into_iter().chain(compare).chain(*result).for_each(visit);
         }
-        Statement::ImageAtomic { image, coordinate, array_index, fun, value } => {
+        Statement::ImageAtomic {
+            image,
+            coordinate,
+            array_index,
+            fun,
+            value,
+        } => {
             let compare = match fun {
                 naga::AtomicFunction::Exchange { compare } => *compare,
                 _ => None,
             };
-            [*image, *coordinate, *value].into_iter().chain(compare).chain(*array_index).for_each(visit);
+            [*image, *coordinate, *value]
+                .into_iter()
+                .chain(compare)
+                .chain(*array_index)
+                .for_each(visit);
         }
         Statement::WorkGroupUniformLoad { pointer, result } => [*pointer, *result].into_iter().for_each(visit),
         Statement::SubgroupBallot { result, predicate } => [*result].into_iter().chain(*predicate).for_each(visit),

@@ -24,7 +24,11 @@ pub fn assign(plan: &mut Plan) {
             let function = functions.get(&(home, item.name.clone())).copied();
             let entry = function.is_some_and(|f| matches!(plan.functions[f].body, Body::Entry(_)));
             // The root's entry points are what a host calls by name.
-            let wanted = if entry && home == 0 { item.name.clone() } else { joined(&prefix, &item.name) };
+            let wanted = if entry && home == 0 {
+                item.name.clone()
+            } else {
+                joined(&prefix, &item.name)
+            };
             let name = free(wanted, &mut used);
             if let Some(function) = function {
                 plan.functions[function].name.clone_from(&name);
@@ -45,7 +49,11 @@ pub fn assign(plan: &mut Plan) {
     for index in 0..plan.functions.len() {
         if let Body::Combined { slot, function, .. } = &plan.functions[index].body {
             let prefix = &plan.homes[plan.functions[index].home].prefix;
-            let wanted = if slot == function { format!("{prefix}_{slot}") } else { format!("{prefix}_{slot}_{function}") };
+            let wanted = if slot == function {
+                format!("{prefix}_{slot}")
+            } else {
+                format!("{prefix}_{slot}_{function}")
+            };
             plan.functions[index].name = free(wanted, &mut used);
         }
     }

@@ -16,7 +16,9 @@ fn block(unit: &Unit, function: &Function, body: &Block, calls_pure: &dyn Fn(Han
         Statement::Block(inner) => block(unit, function, inner, calls_pure),
         Statement::If { accept, reject, .. } => block(unit, function, accept, calls_pure) && block(unit, function, reject, calls_pure),
         Statement::Switch { cases, .. } => cases.iter().all(|c| block(unit, function, &c.body, calls_pure)),
-        Statement::Loop { body, continuing, .. } => block(unit, function, body, calls_pure) && block(unit, function, continuing, calls_pure),
+        Statement::Loop { body, continuing, .. } => {
+            block(unit, function, body, calls_pure) && block(unit, function, continuing, calls_pure)
+        }
         Statement::Store { pointer, .. } => writes_local(unit, function, *pointer),
         Statement::Call { function, .. } => calls_pure(*function),
         _ => false,
@@ -37,7 +39,10 @@ fn writes_local(unit: &Unit, function: &Function, mut pointer: Handle<Expression
 /// Whether a call may go when nobody reads its result: the callee is pure, and is given no pointer to write through.
 pub fn can_go(functions: &[Planned], planned: &Planned, unit: &Unit, callee: Handle<Function>) -> bool {
     let takes_pointer = unit.ir.functions[callee].arguments.iter().any(|a| {
-        matches!(unit.ir.types[a.ty].inner, TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. })
+        matches!(
+            unit.ir.types[a.ty].inner,
+            TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. }
+        )
     });
     !takes_pointer && planned.calls.get(&callee).is_some_and(|&id| functions[id].pure)
 }

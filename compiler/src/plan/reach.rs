@@ -43,7 +43,14 @@ pub fn plan(catalog: &Catalog, tree: Tree, instances: Instances, roots: &Roots) 
     };
     reach.instance_homes()?;
     reach.roots(roots)?;
-    let Reach { tree, instances, homes, interfaces, functions, .. } = reach;
+    let Reach {
+        tree,
+        instances,
+        homes,
+        interfaces,
+        functions,
+        ..
+    } = reach;
     let mut structs = Structs::default();
     for home in 0..homes.len() {
         structs.add(&homes, home, |category| interfaces.get(category).copied());
@@ -88,7 +95,11 @@ impl Reach<'_> {
             let node = &self.tree.nodes[instance.node];
             let unit = self.catalog.unit(&node.module, &node.constants)?;
             // What the compiler makes itself needs no telling apart.
-            let prefix = if node.module.category.is_empty() { String::new() } else { instance.name.clone() };
+            let prefix = if node.module.category.is_empty() {
+                String::new()
+            } else {
+                instance.name.clone()
+            };
             self.push_home(unit, Some(index), prefix);
         }
         // Every interface that a unit names.
@@ -129,7 +140,13 @@ impl Reach<'_> {
         let index = self.homes.len();
         let base = self.homes.last().map_or(1, |h| h.base + h.unit.composed.text.len() as u32 + 1);
         let first = self.homes.iter().position(|h| Arc::ptr_eq(&h.unit, &unit)).unwrap_or(index);
-        self.homes.push(Home { unit, base, instance, first, prefix });
+        self.homes.push(Home {
+            unit,
+            base,
+            instance,
+            first,
+            prefix,
+        });
         index
     }
 
@@ -155,8 +172,11 @@ impl Reach<'_> {
             None => Diagnostic::new(codes::NOT_A_ROOT, format!("`{}` has no entry points", node.module.name))
                 .at(&node.place.file, node.place.span(), "a pass is needed here")
                 .note("a subtree without entry points can be probed, not emitted"),
-            Some(entry) => Diagnostic::new(codes::BAD_DISPATCH, format!("`{}` has no entry point `{entry}`", node.module.name))
-                .at(&unit.file, 0..0, "not in this file"),
+            Some(entry) => Diagnostic::new(codes::BAD_DISPATCH, format!("`{}` has no entry point `{entry}`", node.module.name)).at(
+                &unit.file,
+                0..0,
+                "not in this file",
+            ),
         };
         Err(diagnostic.into())
     }
@@ -172,7 +192,7 @@ impl Reach<'_> {
         let (home, body) = target.clone();
         let mut calls = HashMap::new();
         let mut targets = Vec::new();
-        let mut pure = true;
+        let pure;
         if let Body::Combined { slot, function, .. } = &body {
             for next in self.list_targets(home, slot, function)? {
                 targets.push(self.visit(next)?);
@@ -194,12 +214,24 @@ impl Reach<'_> {
                     calls.insert(handle, id);
                 }
             }
-            pure = is_pure(&unit, function, &|f| calls.get(&f).is_none_or(|&id: &usize| self.functions[id].pure));
+            pure = is_pure(&unit, function, &|f| {
+                calls.get(&f).is_none_or(|&id: &usize| self.functions[id].pure)
+            });
         }
         self.stack.pop();
         let id = self.functions.len();
         let needed = matches!(body, Body::Entry(_));
-        self.functions.push(Planned { home, body, calls, targets, caller: None, live: Vec::new(), pure, needed, name: String::new() });
+        self.functions.push(Planned {
+            home,
+            body,
+            calls,
+            targets,
+            caller: None,
+            live: Vec::new(),
+            pure,
+            needed,
+            name: String::new(),
+        });
         self.memo.insert(target, id);
         Ok(id)
     }
@@ -222,7 +254,11 @@ impl Reach<'_> {
         let home = self.interfaces.get(category).copied();
         let found = home.and_then(|h| Some((h, Body::Function(*self.homes[h].unit.functions.get(function)?))));
         found.ok_or_else(|| {
-            Diagnostic::new(codes::MISSING_FUNCTION, format!("the interface `{category}` has no function `{function}`")).into()
+            Diagnostic::new(
+                codes::MISSING_FUNCTION,
+                format!("the interface `{category}` has no function `{function}`"),
+            )
+            .into()
         })
     }
 
@@ -236,7 +272,15 @@ impl Reach<'_> {
             [one] => self.implementation(one, function),
             _ => {
                 let rule = self.rule(home, &filled.interface, slot, function)?;
-                Ok((home, Body::Combined { stub, rule, slot: slot.to_owned(), function: function.to_owned() }))
+                Ok((
+                    home,
+                    Body::Combined {
+                        stub,
+                        rule,
+                        slot: slot.to_owned(),
+                        function: function.to_owned(),
+                    },
+                ))
             }
         }
     }
@@ -250,13 +294,17 @@ impl Reach<'_> {
         if let Some(rule) = category.and_then(|c| c.manifest.combine.get(function)) {
             return Ok(*rule);
         }
-        let mut diagnostic =
-            Diagnostic::new(codes::NOT_COMBINABLE, format!("`{interface}` does not say how results of `{function}` combine in the slot `{slot}`"));
+        let mut diagnostic = Diagnostic::new(
+            codes::NOT_COMBINABLE,
+            format!("`{interface}` does not say how results of `{function}` combine in the slot `{slot}`"),
+        );
         if let Some(node) = self.node(home) {
             let place = &self.tree.nodes[node].place;
             diagnostic = diagnostic.at(&place.file, place.span(), "several modules stand in that slot here");
         }
-        Err(diagnostic.note("`combine` in the interface's category.ron names the rule: Sum, Product or Chain").into())
+        Err(diagnostic
+            .note("`combine` in the interface's category.ron names the rule: Sum, Product or Chain")
+            .into())
     }
 
     fn list_targets(&self, home: usize, slot: &str, function: &str) -> Result<Vec<Target>, Report> {
@@ -271,16 +319,20 @@ impl Reach<'_> {
         match unit.functions.get(function) {
             Some(&handle) if unit.dependent[handle.index()] => Ok((home, Body::Function(handle))),
             Some(&handle) => Ok((self.homes[home].first, Body::Function(handle))),
-            None => Err(Diagnostic::new(codes::MISSING_FUNCTION, format!("the module does not define `{function}`"))
-                .at(&unit.file, 0..0, "in this file")
-                .into()),
+            None => Err(
+                Diagnostic::new(codes::MISSING_FUNCTION, format!("the module does not define `{function}`"))
+                    .at(&unit.file, 0..0, "in this file")
+                    .into(),
+            ),
         }
     }
 
     /// A function that the owner of the slot offers: its own, one of its slots', or one that it is offered itself.
     fn offered(&mut self, home: usize, interface: &str, function: &str) -> Result<Target, Report> {
         let parent = self.homes[home].instance.and_then(|i| self.instances.list[i].parent);
-        let Some(owner) = parent else { return self.neutral(interface, function) };
+        let Some(owner) = parent else {
+            return self.neutral(interface, function);
+        };
         let unit = Arc::clone(&self.homes[owner].unit);
         let found = unit.functions.get(function).copied();
         match (unit.origin(function), found) {
@@ -291,18 +343,30 @@ impl Reach<'_> {
             _ if self.tree.nodes[self.instances.list[owner].node].module.category.is_empty() => self.neutral(interface, function),
             _ => {
                 let node = &self.tree.nodes[self.instances.list[home].node];
-                Err(Diagnostic::new(codes::MISSING_FUNCTION, format!("the module does not define `{function}`, which `{}` calls", node.module.name))
-                    .at(&unit.file, 0..0, "in this file")
-                    .at(&node.place.file, node.place.span(), format!("`{}` fills one of its slots here", node.module.name))
-                    .note(format!("modules of `{}` call functions of the module that they serve", node.module.category))
-                    .into())
+                Err(Diagnostic::new(
+                    codes::MISSING_FUNCTION,
+                    format!("the module does not define `{function}`, which `{}` calls", node.module.name),
+                )
+                .at(&unit.file, 0..0, "in this file")
+                .at(
+                    &node.place.file,
+                    node.place.span(),
+                    format!("`{}` fills one of its slots here", node.module.name),
+                )
+                .note(format!(
+                    "modules of `{}` call functions of the module that they serve",
+                    node.module.category
+                ))
+                .into())
             }
         }
     }
 
     fn same_signature(&self, home: usize, owner: usize, function: &str, offered: Handle<naga::Function>) -> Result<(), Report> {
         let (caller, unit) = (&self.homes[home].unit, &self.homes[owner].unit);
-        let Some(&expected) = caller.functions.get(function) else { return Ok(()) };
+        let Some(&expected) = caller.functions.get(function) else {
+            return Ok(());
+        };
         crate::parse::same_signature(unit, offered, caller, expected, function)
     }
 
@@ -320,7 +384,10 @@ impl Reach<'_> {
                 }
             }
         }
-        diagnostic.note(format!("the circle is {}", names.join(" -> "))).note("WGSL has no recursion").into()
+        diagnostic
+            .note(format!("the circle is {}", names.join(" -> ")))
+            .note("WGSL has no recursion")
+            .into()
     }
 
     fn target_name(&self, (home, body): &Target) -> String {
@@ -362,4 +429,3 @@ fn calls_in(ir: &naga::Module, function: &naga::Function, block: &Block, calls: 
         }
     }
 }
-

@@ -35,16 +35,27 @@ impl Structs {
     pub fn add(&mut self, homes: &[Home], home: usize, interface_home: impl Fn(&str) -> Option<usize>) {
         let unit = &homes[home].unit;
         for (&handle, StructKey { interface, name }) in &unit.structs {
-            let declared = interface.as_deref().map_or(Some(homes[home].first), &interface_home).unwrap_or(homes[home].first);
+            let declared = interface
+                .as_deref()
+                .map_or(Some(homes[home].first), &interface_home)
+                .unwrap_or(homes[home].first);
             let members = match &unit.ir.types[handle].inner {
                 naga::TypeInner::Struct { members, .. } => members.len(),
                 _ => 0,
             };
             let id = *self.by_key.entry((declared, name.clone())).or_insert_with(|| {
-                self.list.push(Struct { home: declared, name: name.clone(), fixed: false, live: vec![false; members] });
+                self.list.push(Struct {
+                    home: declared,
+                    name: name.clone(),
+                    fixed: false,
+                    live: vec![false; members],
+                });
                 self.list.len() - 1
             });
-            self.list[id].fixed |= unit.fixed_structs.contains(&StructKey { interface: interface.clone(), name: name.clone() });
+            self.list[id].fixed |= unit.fixed_structs.contains(&StructKey {
+                interface: interface.clone(),
+                name: name.clone(),
+            });
             self.ids.insert((home, handle), id);
         }
     }

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::{
-    Binding, BindingType, Fill, FunctionOrigin, Instance, Layouts, Override, ParamPlace, ParamUse, Pass, Reflection, SCHEMA_VERSION, binding_type,
-    entry_point, stages_using, wgsl_type_name,
+    Binding, BindingType, Fill, FunctionOrigin, Instance, Layouts, Override, ParamPlace, ParamUse, Pass, Reflection, SCHEMA_VERSION,
+    binding_type, entry_point, stages_using, wgsl_type_name,
 };
 use crate::catalog::Catalog;
 use crate::parse::constant_name;
@@ -15,7 +15,9 @@ use crate::validate::Validated;
 pub fn reflect(catalog: &Catalog, plan: &Plan, validated: &Validated, hash: u128, pass: &str) -> Reflection {
     let module = validated.module();
     let bindings = bindings(catalog, plan, validated);
-    let reached: Vec<bool> = (0..plan.instances.list.len()).map(|i| plan.functions.iter().any(|f| f.home == i)).collect();
+    let reached: Vec<bool> = (0..plan.instances.list.len())
+        .map(|i| plan.functions.iter().any(|f| f.home == i))
+        .collect();
     let mut capabilities: Vec<String> = Vec::new();
     let mut passes = Vec::new();
     for (index, instance) in plan.instances.list.iter().enumerate() {
@@ -23,8 +25,15 @@ pub fn reflect(catalog: &Catalog, plan: &Plan, validated: &Validated, hash: u128
         if reached[index] {
             capabilities.extend(manifest.capabilities.iter().cloned());
             // A pass of the tree's own modules does not run before itself.
-            let own = manifest.passes.iter().filter(|(name, _)| pass == "main" && format!("{}.{name}", instance.name) != pass);
-            passes.extend(own.map(|(name, declared)| Pass { instance: instance.name.clone(), name: name.clone(), declared: declared.clone() }));
+            let own = manifest
+                .passes
+                .iter()
+                .filter(|(name, _)| pass == "main" && format!("{}.{name}", instance.name) != pass);
+            passes.extend(own.map(|(name, declared)| Pass {
+                instance: instance.name.clone(),
+                name: name.clone(),
+                declared: declared.clone(),
+            }));
         }
     }
     capabilities.sort();
@@ -58,8 +67,14 @@ fn bindings(catalog: &Catalog, plan: &Plan, validated: &Validated) -> Vec<Bindin
         let name = unit.ir.global_variables[global.handle].name.clone().unwrap_or_default();
         let instance = plan.homes[global.home].instance.map(|i| plan.instances.list[i].name.clone());
         let fill = match (&instance, declared(catalog, plan, global.home, &name)) {
-            (Some(instance), _) if is_instances(unit, global.handle) => Fill::Instances { instance: instance.clone() },
-            (_, Some(resource)) => Fill::Resource { instance, resource: name, declared: resource.kind.clone() },
+            (Some(instance), _) if is_instances(unit, global.handle) => Fill::Instances {
+                instance: instance.clone(),
+            },
+            (_, Some(resource)) => Fill::Resource {
+                instance,
+                resource: name,
+                declared: resource.kind.clone(),
+            },
             (_, None) => continue,
         };
         by_place.insert(place, fill);
@@ -88,7 +103,9 @@ fn overrides(plan: &Plan, validated: &Validated) -> Vec<Override> {
     let mut found = Vec::new();
     for (index, instance) in plan.instances.list.iter().enumerate() {
         for (name, (_, default)) in &plan.homes[index].unit.needs.overrides {
-            let Some(emitted) = plan.names.get(&(index, constant_name(name))) else { continue };
+            let Some(emitted) = plan.names.get(&(index, constant_name(name))) else {
+                continue;
+            };
             let linked = module.overrides.iter().find(|(_, o)| o.name.as_ref() == Some(emitted));
             if let (Some((_, linked)), Some(default)) = (linked, default.number()) {
                 found.push(Override {
@@ -139,11 +156,20 @@ fn place(plan: &Plan, module: &naga::Module, bindings: &[Binding], home: usize, 
         return there.then(|| ParamPlace::Override { name: emitted.clone() });
     }
     for block in &plan.blocks {
-        let Some(position) = block.members.iter().position(|m| m.home == home && m.param == name) else { continue };
+        let Some(position) = block.members.iter().position(|m| m.home == home && m.param == name) else {
+            continue;
+        };
         let binding = bindings.iter().find(|b| (b.group, b.binding) == (block.group, block.binding))?;
-        let BindingType::Uniform { layout } = &binding.ty else { return None };
+        let BindingType::Uniform { layout } = &binding.ty else {
+            return None;
+        };
         let member = layout.members.get(position)?;
-        return Some(ParamPlace::Uniform { group: block.group, binding: block.binding, offset: member.offset, member: member.name.clone() });
+        return Some(ParamPlace::Uniform {
+            group: block.group,
+            binding: block.binding,
+            offset: member.offset,
+            member: member.name.clone(),
+        });
     }
     None
 }
@@ -152,7 +178,9 @@ fn place(plan: &Plan, module: &naga::Module, bindings: &[Binding], home: usize, 
 /// as used if the home has any function in the shader.
 fn folded(plan: &Plan, home: usize, name: &str) -> bool {
     let unit = &plan.homes[home].unit;
-    let mentions = crate::parse::param_uses(&unit.file.text, &unit.scan).iter().any(|(used, _)| *used == name);
+    let mentions = crate::parse::param_uses(&unit.file.text, &unit.scan)
+        .iter()
+        .any(|(used, _)| *used == name);
     mentions && plan.functions.iter().any(|f| f.home == home)
 }
 

@@ -23,7 +23,11 @@ pub fn resolve(catalog: &Catalog, recipe: &Recipe) -> Result<Tree, Report> {
 
 /// Resolves a tree whose root module is given.
 pub fn resolve_root(catalog: &Catalog, module: Arc<Module>, root: &Node, place: Place) -> Result<Tree, Report> {
-    let mut resolver = Resolver { catalog, tree: Tree { nodes: Vec::new() }, defaults: Vec::new() };
+    let mut resolver = Resolver {
+        catalog,
+        tree: Tree { nodes: Vec::new() },
+        defaults: Vec::new(),
+    };
     resolver.node(module, root, None, "main".to_owned(), place, 0)?;
     rules::check(&resolver.tree)?;
     Ok(resolver.tree)
@@ -47,21 +51,31 @@ impl Resolver<'_> {
         depth: usize,
     ) -> Result<usize, Report> {
         if depth > limits::TREE_DEPTH {
-            return Err(Diagnostic::new(codes::TREE_TOO_DEEP, format!("the tree is deeper than {} slots", limits::TREE_DEPTH))
-                .at(&place.file, place.span(), "here it goes too deep")
-                .into());
+            return Err(Diagnostic::new(
+                codes::TREE_TOO_DEEP,
+                format!("the tree is deeper than {} slots", limits::TREE_DEPTH),
+            )
+            .at(&place.file, place.span(), "here it goes too deep")
+            .into());
         }
         if self.tree.nodes.len() >= limits::INSTANCES {
-            return Err(Diagnostic::new(codes::TOO_MANY_INSTANCES, format!("the tree has more than {} modules", limits::INSTANCES))
-                .at(&place.file, place.span(), "with this one")
-                .into());
+            return Err(Diagnostic::new(
+                codes::TOO_MANY_INSTANCES,
+                format!("the tree has more than {} modules", limits::INSTANCES),
+            )
+            .at(&place.file, place.span(), "with this one")
+            .into());
         }
         let constants = constants(&module, node, &place)?;
         let index = self.tree.nodes.len();
         if let Some(label) = &node.label {
             if !is_identifier(label) {
                 return Err(Diagnostic::new(codes::BAD_LABEL, format!("the label `{label}` is no identifier"))
-                    .at(&place.file, place.keys(&["label"]).span(), "letters, digits and underscores, not a digit first")
+                    .at(
+                        &place.file,
+                        place.keys(&["label"]).span(),
+                        "letters, digits and underscores, not a digit first",
+                    )
                     .into());
             }
         }
@@ -77,7 +91,11 @@ impl Resolver<'_> {
         self.unknown_slots(&module, node, &place)?;
         for (name, slot) in &module.manifest.slots {
             let nodes = self.slot(index, &module, node, (name, slot), &path, &place, depth)?;
-            let filled = Filled { arity: slot.arity, interface: slot.interface.clone(), nodes };
+            let filled = Filled {
+                arity: slot.arity,
+                interface: slot.interface.clone(),
+                nodes,
+            };
             self.tree.nodes[index].fills.insert(name.clone(), filled);
         }
         Ok(index)
@@ -88,10 +106,12 @@ impl Resolver<'_> {
             if !module.manifest.slots.contains_key(name) {
                 let known: Vec<&str> = module.manifest.slots.keys().map(String::as_str).collect();
                 let span = place.keys(&["fill", name]).key_span();
-                return Err(Diagnostic::new(codes::UNKNOWN_SLOT, format!("`{}` has no slot `{name}`", module.name))
-                    .at(&place.file, span, "no such slot")
-                    .suggest(name, "slots", known)
-                    .into());
+                return Err(
+                    Diagnostic::new(codes::UNKNOWN_SLOT, format!("`{}` has no slot `{name}`", module.name))
+                        .at(&place.file, span, "no such slot")
+                        .suggest(name, "slots", known)
+                        .into(),
+                );
             }
         }
         Ok(())
@@ -118,20 +138,25 @@ impl Resolver<'_> {
                 if let Some(first) = self.defaults.iter().position(|m| *m == module.name) {
                     let mut circle = self.defaults[first..].to_vec();
                     circle.push(module.name.clone());
-                    return Err(Diagnostic::new(codes::CYCLIC_TREE, format!("the defaults of `{}` lead back to itself", module.name))
-                        .at(&at.file, at.span(), "this default is part of the circle")
-                        .note(format!("the circle is {}", circle.join(" -> ")))
-                        .note("fill the slot in the recipe, or take one of the defaults away")
-                        .into());
+                    return Err(
+                        Diagnostic::new(codes::CYCLIC_TREE, format!("the defaults of `{}` lead back to itself", module.name))
+                            .at(&at.file, at.span(), "this default is part of the circle")
+                            .note(format!("the circle is {}", circle.join(" -> ")))
+                            .note("fill the slot in the recipe, or take one of the defaults away")
+                            .into(),
+                    );
                 }
                 (default.clone(), at)
             }
             (None, None) if slot.arity == Arity::Single => {
                 let fits = self.catalog.fits(&slot.interface);
-                return Err(Diagnostic::new(codes::MISSING_FILLING, format!("nothing fills the slot `{name}` of `{}`", module.name))
-                    .at(&place.file, place.span(), format!("`{name}` is missing here"))
-                    .note(format!("modules of `{}` fit: {}", slot.interface, list_or_none(&fits)))
-                    .into());
+                return Err(Diagnostic::new(
+                    codes::MISSING_FILLING,
+                    format!("nothing fills the slot `{name}` of `{}`", module.name),
+                )
+                .at(&place.file, place.span(), format!("`{name}` is missing here"))
+                .note(format!("modules of `{}` fit: {}", slot.interface, list_or_none(&fits)))
+                .into());
             }
             (None, None) => return Ok(Vec::new()),
         };
@@ -146,9 +171,16 @@ impl Resolver<'_> {
             Arity::List => 0..=limits::LIST_LENGTH,
         };
         if !takes.contains(&nodes.len()) {
-            return Err(Diagnostic::new(codes::TOO_MANY_FILLINGS, format!("{} modules in the slot `{name}` of `{}`", nodes.len(), module.name))
-                .at(&at.file, at.span(), format!("it takes {}", if slot.arity == Arity::Single { "exactly one" } else { "fewer" }))
-                .into());
+            return Err(Diagnostic::new(
+                codes::TOO_MANY_FILLINGS,
+                format!("{} modules in the slot `{name}` of `{}`", nodes.len(), module.name),
+            )
+            .at(
+                &at.file,
+                at.span(),
+                format!("it takes {}", if slot.arity == Arity::Single { "exactly one" } else { "fewer" }),
+            )
+            .into());
         }
         let is_default = by_recipe.is_none();
         if is_default {
@@ -159,7 +191,11 @@ impl Resolver<'_> {
             let at = if many { at.then(Way::Index(index)) } else { at.clone() };
             let path = if module.category.is_empty() {
                 path.to_owned()
-            } else if slot.arity == Arity::List { format!("{path}.{name}[{index}]") } else { format!("{path}.{name}") };
+            } else if slot.arity == Arity::List {
+                format!("{path}.{name}[{index}]")
+            } else {
+                format!("{path}.{name}")
+            };
             let module = self.catalog.module_at(&child.module, Some((&slot.interface, name)), &at)?;
             filled.push(self.node(module, child, Some(owner), path, at, depth + 1)?);
         }
@@ -181,24 +217,25 @@ fn constants(module: &Module, node: &Node, place: &Place) -> Result<IndexMap<Str
         if !manifest.params.contains_key(name) {
             let at = place.keys(&["freeze", name]);
             if manifest.instances.contains_key(name) {
-                return Err(Diagnostic::new(codes::INSTANCE_FIELD_FROZEN, format!("`{name}` differs from instance to instance"))
-                    .at(&at.file, at.key_span(), "a recipe cannot freeze it")
-                    .into());
+                return Err(
+                    Diagnostic::new(codes::INSTANCE_FIELD_FROZEN, format!("`{name}` differs from instance to instance"))
+                        .at(&at.file, at.key_span(), "a recipe cannot freeze it")
+                        .into(),
+                );
             }
-            return Err(Diagnostic::new(codes::UNKNOWN_PARAM, format!("`{}` has no parameter `{name}`", module.name))
-                .at(&at.file, at.key_span(), "no such parameter")
-                .suggest(name, "parameters", manifest.params.keys().map(String::as_str))
-                .into());
+            return Err(
+                Diagnostic::new(codes::UNKNOWN_PARAM, format!("`{}` has no parameter `{name}`", module.name))
+                    .at(&at.file, at.key_span(), "no such parameter")
+                    .suggest(name, "parameters", manifest.params.keys().map(String::as_str))
+                    .into(),
+            );
         }
     }
     let mut constants = IndexMap::new();
     for (name, param) in &manifest.params {
         let (value, at) = match node.freeze.get(name) {
             Some(value) => (value, place.keys(&["freeze", name])),
-            None if param.mode == ParamMode::Constant => (
-                &param.default,
-                Place::new(&module.source).keys(&["params", name, "default"]),
-            ),
+            None if param.mode == ParamMode::Constant => (&param.default, Place::new(&module.source).keys(&["params", name, "default"])),
             None => continue,
         };
         let typed = typed(param, value).map_err(|error| Report::from(error.diagnostic(name, &at.file, at.span())))?;

@@ -41,15 +41,29 @@ impl Instances {
         for (index, node) in tree.nodes.iter().enumerate() {
             let parent = node.parent.map(|p| of_node[p]);
             // Below a shared parent everything is shared with it.
-            let own_texture = node.module.manifest.resources.values().any(|r| matches!(r.kind, ResourceKind::Texture { .. }));
+            let own_texture = node
+                .module
+                .manifest
+                .resources
+                .values()
+                .any(|r| matches!(r.kind, ResourceKind::Texture { .. }));
             let shared_with_parent = node.parent.filter(|&p| list[of_node[p]].node != p);
             let twin = shared_with_parent.map(|p| twin_below(tree, p, index, list[of_node[p]].node));
             let instance = match twin {
                 Some(Some(first)) => of_node[first],
                 _ => {
-                    let key = (structure[index].as_str(), parent.filter(|_| offered[index]), own_texture.then_some(index));
+                    let key = (
+                        structure[index].as_str(),
+                        parent.filter(|_| offered[index]),
+                        own_texture.then_some(index),
+                    );
                     *known.entry(key).or_insert_with(|| {
-                        list.push(Instance { name: String::new(), node: index, nodes: Vec::new(), parent });
+                        list.push(Instance {
+                            name: String::new(),
+                            node: index,
+                            nodes: Vec::new(),
+                            parent,
+                        });
                         list.len() - 1
                     })
                 }
@@ -98,7 +112,9 @@ fn structures(tree: &Tree) -> Vec<String> {
 fn offered_subtrees(catalog: &Catalog, tree: &Tree) -> Vec<bool> {
     let mut offered = vec![false; tree.nodes.len()];
     for (index, node) in tree.nodes.iter().enumerate().rev() {
-        offered[index] = catalog.category(&node.module.category).is_some_and(|c| !c.manifest.offers.is_empty());
+        offered[index] = catalog
+            .category(&node.module.category)
+            .is_some_and(|c| !c.manifest.offers.is_empty());
     }
     offered
 }
@@ -108,7 +124,10 @@ fn name(tree: &Tree, list: &mut [Instance]) {
     for instance in list.iter_mut() {
         let node = &tree.nodes[instance.node];
         let module = identifier(&node.module.name);
-        let base = node.label.as_ref().map_or_else(|| module.clone(), |label| format!("{module}_{label}"));
+        let base = node
+            .label
+            .as_ref()
+            .map_or_else(|| module.clone(), |label| format!("{module}_{label}"));
         let mut name = base.clone();
         loop {
             let count = used.entry(name.clone()).or_insert(0);
@@ -126,7 +145,10 @@ fn name(tree: &Tree, list: &mut [Instance]) {
 
 /// A module's name as an identifier.
 fn identifier(name: &str) -> String {
-    let mut text: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
+    let mut text: String = name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' })
+        .collect();
     if text.starts_with(|c: char| c.is_ascii_digit()) || text.is_empty() {
         text.insert(0, 'm');
     }

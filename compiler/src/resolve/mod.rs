@@ -39,7 +39,10 @@ pub struct Place {
 impl Place {
     /// The whole of a text.
     pub fn new(file: &Arc<SourceFile>) -> Self {
-        Self { file: Arc::clone(file), path: Vec::new() }
+        Self {
+            file: Arc::clone(file),
+            path: Vec::new(),
+        }
     }
 
     /// The same text, further in.
@@ -47,7 +50,10 @@ impl Place {
     pub fn then(&self, step: Way) -> Self {
         let mut path = self.path.clone();
         path.push(step);
-        Self { file: Arc::clone(&self.file), path }
+        Self {
+            file: Arc::clone(&self.file),
+            path,
+        }
     }
 
     /// The same text, further in by keys.

@@ -38,13 +38,21 @@ fn check_rule(tree: &Tree, index: usize, node: &TreeNode, rule: &Rule) -> Result
         return Ok(());
     }
     match (wanted, found) {
-        (true, None) => Err(Diagnostic::new(codes::RULE_BROKEN, format!("`{name}` requires `{tag}` in {place}: {because}"))
-            .at(&node.place.file, node.place.span(), format!("`{name}` stands here"))
-            .into()),
-        (false, Some((_, other))) => Err(Diagnostic::new(codes::RULE_BROKEN, format!("`{name}` excludes `{tag}` in {place}: {because}"))
-            .at(&node.place.file, node.place.span(), format!("`{name}` stands here"))
-            .at(&other.place.file, other.place.span(), format!("`{}` stands here", other.module.name))
-            .into()),
+        (true, None) => Err(
+            Diagnostic::new(codes::RULE_BROKEN, format!("`{name}` requires `{tag}` in {place}: {because}"))
+                .at(&node.place.file, node.place.span(), format!("`{name}` stands here"))
+                .into(),
+        ),
+        (false, Some((_, other))) => Err(
+            Diagnostic::new(codes::RULE_BROKEN, format!("`{name}` excludes `{tag}` in {place}: {because}"))
+                .at(&node.place.file, node.place.span(), format!("`{name}` stands here"))
+                .at(
+                    &other.place.file,
+                    other.place.span(),
+                    format!("`{}` stands here", other.module.name),
+                )
+                .into(),
+        ),
         _ => Ok(()),
     }
 }

@@ -13,7 +13,10 @@ pub struct Texts(pub BTreeMap<String, String>);
 impl Library for Texts {
     fn folders(&self, folder: &str) -> Vec<String> {
         let prefix = if folder.is_empty() { String::new() } else { format!("{folder}/") };
-        let below = self.0.keys().filter_map(|path| path.strip_prefix(&prefix)?.split_once('/').map(|(name, _)| name.to_owned()));
+        let below = self
+            .0
+            .keys()
+            .filter_map(|path| path.strip_prefix(&prefix)?.split_once('/').map(|(name, _)| name.to_owned()));
         below.collect::<BTreeSet<_>>().into_iter().collect()
     }
 
@@ -26,7 +29,10 @@ impl Texts {
     /// A category with its interface.
     #[must_use]
     pub fn category(mut self, name: &str, manifest: &str, interface: &str) -> Self {
-        self.0.insert(format!("{name}/category.ron"), format!("(summary: \"{name}\", order: 1, {manifest})"));
+        self.0.insert(
+            format!("{name}/category.ron"),
+            format!("(summary: \"{name}\", order: 1, {manifest})"),
+        );
         self.0.insert(format!("{name}/interface.wgsl"), interface.to_owned());
         self
     }
@@ -34,7 +40,10 @@ impl Texts {
     /// A module of a category.
     #[must_use]
     pub fn module(mut self, category: &str, name: &str, manifest: &str, wgsl: &str) -> Self {
-        self.0.insert(format!("{category}/{name}/module.ron"), format!("(summary: \"{name}\", {manifest})"));
+        self.0.insert(
+            format!("{category}/{name}/module.ron"),
+            format!("(summary: \"{name}\", {manifest})"),
+        );
         self.0.insert(format!("{category}/{name}/{name}.wgsl"), wgsl.to_owned());
         self
     }
@@ -67,7 +76,11 @@ impl Texts {
 pub fn small() -> Texts {
     Texts::default()
         .category("pass", "group: 3", "")
-        .category("value", r#"combine: {"value": Sum}"#, "fn value(x: f32) -> f32 {\n    return x;\n}\n")
+        .category(
+            "value",
+            r#"combine: {"value": Sum}"#,
+            "fn value(x: f32) -> f32 {\n    return x;\n}\n",
+        )
         .module(
             "pass",
             "run",

@@ -1,0 +1,97 @@
+//! The programs of a frame: each recipe and pass is compiled once, many at a time.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
+use rayon::prelude::*;
+use shadewright_compiler::catalog::{Catalog, Module};
+use shadewright_compiler::manifest::{Filling, Node};
+use shadewright_compiler::program::{Program, Recipe};
+use shadewright_compiler::{Report, reflect};
+
+use crate::gpu::lock;
+
+/// A recipe and a pass of it, as a key.
+type Key = (String, String);
+
+/// Compiled programs by recipe and pass.
+pub(crate) struct Programs {
+    catalog: Arc<Catalog>,
+    made: Mutex<HashMap<Key, Arc<Program>>>,
+}
+
+/// The recipe as text: equal for equal trees.
+pub(crate) fn text_of(node: &Node) -> String {
+    // A tree of strings, numbers and booleans with string keys always has a JSON form.
+    serde_json::to_string(node).unwrap_or_default()
+}
+
+impl Programs {
+    pub fn new(catalog: Arc<Catalog>) -> Self {
+        Self {
+            catalog,
+            made: Mutex::default(),
+        }
+    }
+
+    pub fn catalog(&self) -> &Catalog {
+        &self.catalog
+    }
+
+    /// The program of a pass, compiled if it is new.
+    pub fn get(&self, root: &Node, pass: &str) -> Result<Arc<Program>, Report> {
+        let key = (text_of(root), pass.to_owned());
+        if let Some(made) = lock(&self.made).get(&key) {
+            return Ok(Arc::clone(made));
+        }
+        let program = Arc::new(self.catalog.compile(&Recipe::from(root.clone()), pass)?);
+        Ok(Arc::clone(lock(&self.made).entry(key).or_insert(program)))
+    }
+
+    /// Compiles many on all cores.
+    pub fn get_many(&self, wanted: &[(Node, String)]) -> Result<Vec<Arc<Program>>, Report> {
+        let made: Vec<_> = wanted.par_iter().map(|(root, pass)| self.get(root, pass)).collect();
+        made.into_iter().collect()
+    }
+
+    /// The module that a node names, in a slot of this interface.
+    pub fn module(&self, node: &Node, interface: Option<&str>) -> Option<&Arc<Module>> {
+        interface
+            .and_then(|category| self.catalog.module(&format!("{category}/{}", node.module)).ok())
+            .or_else(|| self.catalog.module(&node.module).ok())
+    }
+
+    /// What stands in a slot of a node: what the recipe says, else the module's default.
+    pub fn filling(&self, node: &Node, interface: Option<&str>, slot: &str) -> Option<Filling> {
+        node.fill.get(slot).cloned().or_else(|| {
+            let module = self.module(node, interface)?;
+            module.manifest.slots.get(slot)?.default.clone()
+        })
+    }
+
+    /// The subtree at a slot path (`main.lights[0].visibility`) of a recipe, and the interface of its slot.
+    pub fn node_at(&self, root: &Node, path: &str) -> Option<(Node, Option<String>)> {
+        let mut at = (root.clone(), None);
+        for segment in path.split('.').skip(1) {
+            let (slot, index) = match segment.strip_suffix(']').and_then(|s| s.split_once('[')) {
+                Some((slot, index)) => (slot, index.parse().ok()?),
+                None => (segment, 0),
+            };
+            let (node, interface) = &at;
+            let next = match self.filling(node, interface.as_deref(), slot)? {
+                Filling::One(node) if index == 0 => node,
+                Filling::One(_) => return None,
+                Filling::Many(nodes) => nodes.into_iter().nth(index)?,
+            };
+            let module = self.module(node, interface.as_deref());
+            let interface = module.and_then(|m| m.manifest.slots.get(slot)).map(|s| s.interface.clone());
+            at = (next, interface);
+        }
+        Some(at)
+    }
+}
+
+/// The instance of this name.
+pub(crate) fn instance<'a>(reflection: &'a reflect::Reflection, name: &str) -> Option<&'a reflect::Instance> {
+    reflection.instances.iter().find(|i| i.name == name)
+}

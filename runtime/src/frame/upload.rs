@@ -1,0 +1,213 @@
+//! Meshes and textures on the GPU, kept as long as frames show them.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::{Mesh, Texture};
+use crate::gpu::{DataError, Gpu, GpuError, RuntimeError};
+
+/// A mesh's buffers.
+#[derive(Debug)]
+pub(crate) struct GpuMesh {
+    /// By vertex location; `None` where the mesh has no such attribute.
+    pub attributes: [Option<wgpu::Buffer>; 4],
+    pub indices: wgpu::Buffer,
+    pub count: u32,
+}
+
+/// Names of the attributes by location.
+pub(crate) const ATTRIBUTES: [&str; 4] = ["positions", "normals", "tangents", "texture coordinates"];
+
+/// What has been uploaded, by the address of the host's allocation, which is held so that no other can take its place.
+#[derive(Debug, Default)]
+pub(crate) struct Uploads {
+    meshes: HashMap<usize, (Arc<Mesh>, Arc<GpuMesh>, u64)>,
+    textures: HashMap<(usize, bool), (Arc<Texture>, wgpu::TextureView, u64)>,
+    frame: u64,
+}
+
+impl Uploads {
+    /// Begins a frame.
+    pub fn begin(&mut self) {
+        self.frame += 1;
+    }
+
+    /// Drops what this frame has not used.
+    pub fn end(&mut self) {
+        let frame = self.frame;
+        self.meshes.retain(|_, (_, _, used)| *used == frame);
+        self.textures.retain(|_, (_, _, used)| *used == frame);
+    }
+
+    /// The mesh's buffers; `path` names it in errors.
+    pub fn mesh(&mut self, gpu: &Gpu, mesh: &Arc<Mesh>, path: &str) -> Result<Arc<GpuMesh>, RuntimeError> {
+        let key = Arc::as_ptr(mesh).addr();
+        if let Some((_, made, used)) = self.meshes.get_mut(&key) {
+            *used = self.frame;
+            return Ok(Arc::clone(made));
+        }
+        let made = Arc::new(upload_mesh(gpu, mesh, path)?);
+        self.meshes.insert(key, (Arc::clone(mesh), Arc::clone(&made), self.frame));
+        Ok(made)
+    }
+
+    /// The texture with all its levels; `srgb` says that its colours are encoded.
+    pub fn texture(&mut self, gpu: &Gpu, texture: &Arc<Texture>, srgb: bool, path: &str) -> Result<wgpu::TextureView, RuntimeError> {
+        let key = (Arc::as_ptr(texture).addr(), srgb);
+        if let Some((_, made, used)) = self.textures.get_mut(&key) {
+            *used = self.frame;
+            return Ok(made.clone());
+        }
+        let made = upload_texture(gpu, texture, srgb, path)?;
+        self.textures.insert(key, (Arc::clone(texture), made.clone(), self.frame));
+        Ok(made)
+    }
+}
+
+fn upload_mesh(gpu: &Gpu, mesh: &Mesh, path: &str) -> Result<GpuMesh, RuntimeError> {
+    let vertices = mesh.positions.len();
+    if !mesh.indices.len().is_multiple_of(3) {
+        return Err(DataError::new(path, format!("{} indices are no triangles", mesh.indices.len())).into());
+    }
+    if let Some(index) = mesh.indices.iter().find(|i| **i as usize >= vertices) {
+        return Err(DataError::new(path, format!("index {index} in a mesh of {vertices} vertices")).into());
+    }
+    let count = u32::try_from(mesh.indices.len()).map_err(|_| DataError::new(path, "more indices than 32 bits can count"))?;
+    let attribute = |location: usize, length: usize, bytes: &[u8]| -> Result<Option<wgpu::Buffer>, RuntimeError> {
+        match length {
+            0 => Ok(None),
+            n if n == vertices => Ok(Some(gpu.buffer(ATTRIBUTES[location], wgpu::BufferUsages::VERTEX, bytes, 0)?)),
+            n => Err(DataError::new(path, format!("{n} {} for {vertices} vertices", ATTRIBUTES[location])).into()),
+        }
+    };
+    Ok(GpuMesh {
+        attributes: [
+            attribute(0, vertices, bytemuck::cast_slice(&mesh.positions))?,
+            attribute(1, mesh.normals.len(), bytemuck::cast_slice(&mesh.normals))?,
+            attribute(2, mesh.tangents.len(), bytemuck::cast_slice(&mesh.tangents))?,
+            attribute(3, mesh.uvs.len(), bytemuck::cast_slice(&mesh.uvs))?,
+        ],
+        indices: gpu.buffer("indices", wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&mesh.indices), 0)?,
+        count,
+    })
+}
+
+fn upload_texture(gpu: &Gpu, texture: &Texture, srgb: bool, path: &str) -> Result<wgpu::TextureView, RuntimeError> {
+    let (width, height) = (texture.width, texture.height);
+    let limit = gpu.device().limits().max_texture_dimension_2d;
+    if width == 0 || height == 0 || width > limit || height > limit {
+        return Err(DataError::new(path, format!("a texture of {width} x {height} texels; this GPU takes 1 to {limit}")).into());
+    }
+    if texture.rgba.len() as u64 != u64::from(width) * u64::from(height) * 4 {
+        return Err(DataError::new(path, format!("{} bytes for {width} x {height} texels of 4", texture.rgba.len())).into());
+    }
+    let levels = levels(texture, srgb);
+    let made = gpu.scoped(path, |device| {
+        let made = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(path),
+            size: wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: u32::try_from(levels.len()).unwrap_or(1),
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: if srgb {
+                wgpu::TextureFormat::Rgba8UnormSrgb
+            } else {
+                wgpu::TextureFormat::Rgba8Unorm
+            },
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        for (level, image) in (0..).zip(&levels) {
+            let to = wgpu::TexelCopyTextureInfo {
+                mip_level: level,
+                ..made.as_image_copy()
+            };
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(image.width * 4),
+                rows_per_image: None,
+            };
+            let size = wgpu::Extent3d {
+                width: image.width,
+                height: image.height,
+                depth_or_array_layers: 1,
+            };
+            gpu.queue().write_texture(to, &image.rgba, layout, size);
+        }
+        made.create_view(&wgpu::TextureViewDescriptor::default())
+    });
+    made.map_err(|error: GpuError| error.into())
+}
+
+/// The texture and its smaller levels down to one texel, each texel the mean of those under it, in linear colour.
+fn levels(texture: &Texture, srgb: bool) -> Vec<Texture> {
+    let mut levels = vec![texture.clone()];
+    while let Some(last) = levels.last()
+        && (last.width > 1 || last.height > 1)
+    {
+        let smaller = half(last, srgb);
+        levels.push(smaller);
+    }
+    levels
+}
+
+fn half(image: &Texture, srgb: bool) -> Texture {
+    let (width, height) = ((image.width / 2).max(1), (image.height / 2).max(1));
+    let texel = |x: u32, y: u32, c: usize| {
+        let (x, y) = (x.min(image.width - 1) as usize, y.min(image.height - 1) as usize);
+        let value = f32::from(image.rgba[(y * image.width as usize + x) * 4 + c]) / 255.0;
+        if srgb && c < 3 { decode(value) } else { value }
+    };
+    let mut rgba = Vec::with_capacity(width as usize * height as usize * 4);
+    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+        for c in 0..4 {
+            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| texel(2 * x + i, 2 * y + j, c));
+            let mean = corners.iter().sum::<f32>() / 4.0;
+            let mean = if srgb && c < 3 { encode(mean) } else { mean };
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // means of values in [0, 1]
+            rgba.push((mean * 255.0 + 0.5) as u8);
+        }
+    }
+    Texture { width, height, rgba }
+}
+
+/// IEC 61966-2-1, encoded to linear.
+fn decode(v: f32) -> f32 {
+    if v <= 0.040_45 {
+        v / 12.92
+    } else {
+        ((v + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// IEC 61966-2-1, linear to encoded.
+fn encode(v: f32) -> f32 {
+    if v <= 0.003_130_8 {
+        v * 12.92
+    } else {
+        1.055 * v.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches means of encoded values (black and white would give 128), and odd sizes that lose or overrun rows.
+    #[test]
+    fn smaller_levels_are_linear_means() {
+        let board = Texture {
+            width: 3,
+            height: 2,
+            rgba: [[0, 0, 0, 0], [255, 255, 255, 255], [255; 4], [255; 4], [0; 4], [0; 4]].concat(),
+        };
+        let encoded = levels(&board, true);
+        assert_eq!(encoded.iter().map(|l| (l.width, l.height)).collect::<Vec<_>>(), [(3, 2), (1, 1)]);
+        assert_eq!(encoded[1].rgba, [188, 188, 188, 128]);
+        assert_eq!(levels(&board, false)[1].rgba, [128; 4]);
+    }
+}

@@ -1,0 +1,17 @@
+//! The GPU: its device, linked programs as pipelines, typed values as bytes, and `probe`.
+
+mod device;
+mod error;
+pub mod layout;
+pub mod pack;
+pub mod pipeline;
+mod probe;
+pub mod resources;
+#[cfg(test)]
+pub(crate) mod testing;
+pub(crate) mod value;
+
+pub use device::Gpu;
+pub(crate) use device::lock;
+pub use error::{DataError, GpuError, RuntimeError};
+pub use probe::{Names, evaluate, probe};

@@ -1,0 +1,436 @@
+//! Pipelines from programs: the IR goes to wgpu as it is, and what has been made is kept.
+//!
+//! Programs with equal canonical hashes share shader modules and pipelines, whatever recipes they came from.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+
+use rayon::prelude::*;
+use shadewright_compiler::program::Program;
+use shadewright_compiler::reflect::{EntryPoint, Stage};
+
+use super::device::lock;
+use super::layout::{GROUPS, bind_group_entries};
+use super::{Gpu, GpuError};
+
+/// Fixed-function state of a render pipeline; with the program and its constants it is the cache's key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct RenderState {
+    /// Colour target; `None` for a depth-only pass.
+    pub color: Option<wgpu::TextureFormat>,
+    /// Blend over what is there by the written alpha (not premultiplied).
+    pub blend: bool,
+    /// Depth target, compared with less; `None` for no depth test.
+    pub depth: Option<wgpu::TextureFormat>,
+    /// Write depth.
+    pub depth_write: bool,
+    /// Drop triangles seen from behind.
+    pub cull_back: bool,
+    /// The front is where the corners run clockwise: the transform mirrors.
+    pub mirrored: bool,
+}
+
+/// Values of pipeline-overridable constants by key; what is not here keeps its default.
+pub type Constants = Vec<(String, f64)>;
+
+/// A pipeline with what is needed to bind resources to it.
+#[derive(Debug)]
+pub struct Pipeline<P> {
+    /// wgpu's pipeline.
+    pub pipeline: P,
+    /// Layout of each bind group; a group that is not used is empty.
+    pub groups: [wgpu::BindGroupLayout; GROUPS],
+    /// Locations of the vertex buffers, one buffer for each, in the order of their slots.
+    pub vertex_locations: Vec<u32>,
+}
+
+/// A render pipeline.
+pub type RenderPipeline = Pipeline<wgpu::RenderPipeline>;
+/// A compute pipeline.
+pub type ComputePipeline = Pipeline<wgpu::ComputePipeline>;
+
+/// What [`Pipelines::render_many`] makes.
+#[derive(Clone, Debug)]
+pub struct RenderRequest<'a> {
+    /// Has a vertex entry point, and a fragment entry point unless it only writes depth.
+    pub program: &'a Program,
+    /// The rest.
+    pub state: RenderState,
+    /// Overridden constants.
+    pub constants: Constants,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct Key<S> {
+    hash: u128,
+    constants: Vec<(String, u64)>,
+    state: S,
+}
+
+/// A value that is made once.
+type Cell<V> = Arc<Mutex<Option<Arc<V>>>>;
+
+/// A map whose values are made at most once each; threads that want the same one wait for the first.
+#[derive(Debug)]
+struct Kept<K, V> {
+    cells: Mutex<HashMap<K, Cell<V>>>,
+    hits: AtomicUsize,
+    misses: AtomicUsize,
+}
+
+impl<K: Eq + Hash, V> Kept<K, V> {
+    fn new() -> Self {
+        Self {
+            cells: Mutex::default(),
+            hits: AtomicUsize::new(0),
+            misses: AtomicUsize::new(0),
+        }
+    }
+
+    /// The value; `make` runs if there is none. What fails is not kept.
+    fn get(&self, key: K, make: impl FnOnce() -> Result<V, GpuError>) -> Result<Arc<V>, GpuError> {
+        let cell = Arc::clone(lock(&self.cells).entry(key).or_default());
+        let mut cell = lock(&cell);
+        if let Some(value) = &*cell {
+            self.hits.fetch_add(1, Ordering::Relaxed);
+            return Ok(Arc::clone(value));
+        }
+        self.misses.fetch_add(1, Ordering::Relaxed);
+        let value = Arc::new(make()?);
+        *cell = Some(Arc::clone(&value));
+        Ok(value)
+    }
+}
+
+/// How often something was found and made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Requests answered from the cache.
+    pub hits: usize,
+    /// Requests that made something.
+    pub misses: usize,
+}
+
+/// The pipelines of one device.
+#[derive(Debug)]
+pub struct Pipelines {
+    gpu: Gpu,
+    shaders: Kept<u128, wgpu::ShaderModule>,
+    render: Kept<Key<RenderState>, RenderPipeline>,
+    compute: Kept<Key<String>, ComputePipeline>,
+}
+
+impl Pipelines {
+    /// An empty cache.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            gpu: gpu.clone(),
+            shaders: Kept::new(),
+            render: Kept::new(),
+            compute: Kept::new(),
+        }
+    }
+
+    /// Render and compute pipelines found and made so far.
+    pub fn counts(&self) -> Counts {
+        let all = [(&self.render.hits, &self.render.misses), (&self.compute.hits, &self.compute.misses)];
+        all.into_iter().fold(Counts::default(), |sum, (hits, misses)| Counts {
+            hits: sum.hits + hits.load(Ordering::Relaxed),
+            misses: sum.misses + misses.load(Ordering::Relaxed),
+        })
+    }
+
+    /// One render pipeline.
+    ///
+    /// # Errors
+    /// wgpu rejects it, or the program has no vertex entry point.
+    pub fn render(&self, request: &RenderRequest) -> Result<Arc<RenderPipeline>, GpuError> {
+        let RenderRequest { program, state, constants } = request;
+        let key = Key {
+            hash: program.hash(),
+            constants: bits(constants),
+            state: *state,
+        };
+        self.render.get(key, || self.make_render(program, *state, constants))
+    }
+
+    /// Many render pipelines at once, on all cores; equal requests are made once.
+    ///
+    /// # Errors
+    /// As for [`Pipelines::render`]; of several, that of the first request.
+    pub fn render_many(&self, requests: &[RenderRequest]) -> Result<Vec<Arc<RenderPipeline>>, GpuError> {
+        let made: Vec<_> = requests.par_iter().map(|request| self.render(request)).collect();
+        made.into_iter().collect()
+    }
+
+    /// The compute pipeline of an entry point.
+    ///
+    /// # Errors
+    /// wgpu rejects it.
+    pub fn compute(&self, program: &Program, entry: &str, constants: &Constants) -> Result<Arc<ComputePipeline>, GpuError> {
+        let key = Key {
+            hash: program.hash(),
+            constants: bits(constants),
+            state: entry.to_owned(),
+        };
+        self.compute.get(key, || {
+            let shader = self.shader(program)?;
+            let (groups, layout) = self.layouts(program)?;
+            let constants = borrowed(constants);
+            let pipeline = self.gpu.scoped(&format!("compute pipeline {entry}"), |device| {
+                device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some(entry),
+                    layout: Some(&layout),
+                    module: &shader,
+                    entry_point: Some(entry),
+                    compilation_options: options(&constants),
+                    cache: None,
+                })
+            })?;
+            Ok(Pipeline {
+                pipeline,
+                groups,
+                vertex_locations: Vec::new(),
+            })
+        })
+    }
+
+    fn shader(&self, program: &Program) -> Result<Arc<wgpu::ShaderModule>, GpuError> {
+        self.shaders.get(program.hash(), || {
+            let module = program.validated().module().clone();
+            self.gpu.scoped("shader module", |device| {
+                device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(&program.reflection().pass),
+                    source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
+                })
+            })
+        })
+    }
+
+    fn layouts(&self, program: &Program) -> Result<([wgpu::BindGroupLayout; GROUPS], wgpu::PipelineLayout), GpuError> {
+        let entries = bind_group_entries(program.reflection())?;
+        self.gpu.scoped("pipeline layout", |device| {
+            let groups = entries.map(|entries| {
+                device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                    label: None,
+                    entries: &entries,
+                })
+            });
+            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: None,
+                bind_group_layouts: &groups.each_ref().map(Some),
+                immediate_size: 0,
+            });
+            (groups, layout)
+        })
+    }
+
+    fn make_render(&self, program: &Program, state: RenderState, constants: &Constants) -> Result<RenderPipeline, GpuError> {
+        let entries = &program.reflection().entry_points;
+        let of_stage = |stage: Stage| entries.iter().find(|e| e.stage == stage);
+        let vertex = of_stage(Stage::Vertex).ok_or_else(|| GpuError::Unsupported {
+            what: format!("drawing with pass {}", program.reflection().pass),
+            needs: "a vertex entry point".into(),
+        })?;
+        let fragment = of_stage(Stage::Fragment);
+        let shader = self.shader(program)?;
+        let (groups, layout) = self.layouts(program)?;
+        let attributes = attributes(vertex)?;
+        let buffers: Vec<_> = attributes
+            .iter()
+            .map(|a| {
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: a.format.size(),
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: std::slice::from_ref(a),
+                })
+            })
+            .collect();
+        let constants = borrowed(constants);
+        let targets = [state.color.map(|format| wgpu::ColorTargetState {
+            format,
+            blend: state.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
+            write_mask: wgpu::ColorWrites::ALL,
+        })];
+        let pipeline = self.gpu.scoped(&format!("render pipeline {}", vertex.name), |device| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(&program.reflection().pass),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: &shader,
+                    entry_point: Some(&vertex.name),
+                    compilation_options: options(&constants),
+                    buffers: &buffers,
+                },
+                primitive: wgpu::PrimitiveState {
+                    cull_mode: state.cull_back.then_some(wgpu::Face::Back),
+                    front_face: if state.mirrored {
+                        wgpu::FrontFace::Cw
+                    } else {
+                        wgpu::FrontFace::Ccw
+                    },
+                    ..Default::default()
+                },
+                depth_stencil: state.depth.map(|format| wgpu::DepthStencilState {
+                    format,
+                    depth_write_enabled: Some(state.depth_write),
+                    depth_compare: Some(wgpu::CompareFunction::Less),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                }),
+                multisample: wgpu::MultisampleState::default(),
+                fragment: fragment.map(|entry| wgpu::FragmentState {
+                    module: &shader,
+                    entry_point: Some(&entry.name),
+                    compilation_options: options(&constants),
+                    targets: if state.color.is_some() { &targets } else { &[] },
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        })?;
+        Ok(Pipeline {
+            pipeline,
+            groups,
+            vertex_locations: attributes.iter().map(|a| a.shader_location).collect(),
+        })
+    }
+}
+
+/// What a location of the vertex stage holds; the binding ABI fixes it.
+fn attributes(vertex: &EntryPoint) -> Result<Vec<wgpu::VertexAttribute>, GpuError> {
+    let attribute = |input: &shadewright_compiler::reflect::StageValue| {
+        let (format, ty) = match input.location {
+            0 | 1 => (wgpu::VertexFormat::Float32x3, "vec3<f32>"),
+            2 => (wgpu::VertexFormat::Float32x4, "vec4<f32>"),
+            3 => (wgpu::VertexFormat::Float32x2, "vec2<f32>"),
+            other => {
+                return Err(GpuError::Unsupported {
+                    what: format!("vertex input {}", input.name),
+                    needs: format!("a mesh attribute at location {other}"),
+                });
+            }
+        };
+        if input.ty != ty {
+            return Err(GpuError::Unsupported {
+                what: format!("vertex input {}", input.name),
+                needs: format!("a mesh attribute of {} at location {}", input.ty, input.location),
+            });
+        }
+        Ok(wgpu::VertexAttribute {
+            format,
+            offset: 0,
+            shader_location: input.location,
+        })
+    };
+    vertex.inputs.iter().map(attribute).collect()
+}
+
+fn bits(constants: &Constants) -> Vec<(String, u64)> {
+    let mut bits: Vec<_> = constants.iter().map(|(name, value)| (name.clone(), value.to_bits())).collect();
+    bits.sort();
+    bits
+}
+
+fn borrowed(constants: &Constants) -> Vec<(&str, f64)> {
+    constants.iter().map(|(name, value)| (name.as_str(), *value)).collect()
+}
+
+fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOptions<'a> {
+    wgpu::PipelineCompilationOptions {
+        constants,
+        ..Default::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::testing::{gpu, pass};
+
+    const FLAT: &str = "
+        struct In { @location(0) position: vec3f }
+        struct Out { @builtin(position) clip: vec4f }
+        struct Color { @location(0) color: vec4f }
+        @vertex fn v(in: In) -> Out { return Out(vec4f(in.position, 1.0)); }
+        @fragment fn f() -> Color { return Color(vec4f(0.75)); }";
+
+    fn state() -> RenderState {
+        RenderState {
+            color: Some(wgpu::TextureFormat::Rgba8Unorm),
+            blend: false,
+            depth: None,
+            depth_write: false,
+            cull_back: false,
+            mirrored: false,
+        }
+    }
+
+    /// Catches a pipeline made twice for one key, and one shared by two keys.
+    #[test]
+    fn equal_requests_share_one_pipeline() {
+        let pipelines = Pipelines::new(&gpu());
+        let (a, same) = (pass(FLAT), pass(&FLAT.replace("Color", "Named")));
+        let other = pass(&FLAT.replace("0.75", "0.5"));
+        let request = |program, state| RenderRequest {
+            program,
+            state,
+            constants: vec![],
+        };
+        let blended = RenderState { blend: true, ..state() };
+        let made = pipelines
+            .render_many(&[
+                request(&a, state()),
+                request(&same, state()),
+                request(&a, blended),
+                request(&other, state()),
+            ])
+            .unwrap();
+        assert!(Arc::ptr_eq(&made[0], &made[1]));
+        assert!(!Arc::ptr_eq(&made[0], &made[2]) && !Arc::ptr_eq(&made[0], &made[3]));
+        assert_eq!(pipelines.counts(), Counts { hits: 1, misses: 3 });
+        assert_eq!(made[0].vertex_locations, [0]);
+    }
+
+    /// Catches wgpu's panic on an uncaptured error, and errors without a name.
+    #[test]
+    fn invalid_pipeline_is_a_typed_error() {
+        let pipelines = Pipelines::new(&gpu());
+        let wrong = pass(&FLAT.replace("color: vec4f", "color: vec4u").replace("vec4f(0.75)", "vec4u(1u)"));
+        let request = RenderRequest {
+            program: &wrong,
+            state: state(),
+            constants: vec![],
+        };
+        let error = pipelines.render(&request).unwrap_err();
+        assert!(
+            matches!(&error, GpuError::Invalid { what, .. } if what == "render pipeline v"),
+            "{error:?}"
+        );
+        let unknown = RenderRequest {
+            constants: vec![("nonsense".into(), 1.0)],
+            ..request
+        };
+        assert!(matches!(pipelines.render(&unknown).unwrap_err(), GpuError::Invalid { .. }));
+        assert_eq!(gpu().check(), Ok(()), "the error was captured");
+    }
+
+    /// Catches a vertex input bound to a mesh attribute of another type, which the driver would fill with garbage.
+    #[test]
+    fn vertex_input_of_another_type_is_refused() {
+        let pipelines = Pipelines::new(&gpu());
+        let wrong = pass(&FLAT.replace("@location(0) position", "@location(3) position"));
+        let error = pipelines.render(&RenderRequest {
+            program: &wrong,
+            state: state(),
+            constants: vec![],
+        });
+        assert_eq!(
+            error.unwrap_err().to_string(),
+            "vertex input position needs a mesh attribute of vec3<f32> at location 3, which is not there"
+        );
+    }
+}

@@ -1,0 +1,490 @@
+//! The smallest recipes that draw a scene, and the frame that shows it.
+//!
+//! An object's recipe holds its own material with the maps it uses, and of the lights only the kinds that there are: lights of one module
+//! that find their shadows alike are one kind. Where nothing casts a shadow, or a light casts none, no visibility module is named and the
+//! light's own default (none) stands. Objects with equal recipes share one.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use glam::{Mat4, Vec3};
+use indexmap::IndexMap;
+use shadewright_compiler::diagnostics::{Diagnostic, codes};
+use shadewright_compiler::manifest::{Filling, Node, ParamType, Step, Value, typed};
+use shadewright_compiler::{Catalog, Module, Report};
+
+use super::check::{Examiner, join};
+use super::recipe::Planter;
+use super::{Choice, Choices, LightDecl, SceneFile, include, view};
+use crate::frame::{Draw, Frame, Lights, Material, Mesh, Settings};
+use crate::mesh::gltf::Alpha;
+
+/// Most lights of a scene, those of glTF files included.
+pub const MAX_LIGHTS: usize = 1024;
+/// Longest side of a picture, pixels.
+pub const MAX_SIZE: u32 = 16_384;
+
+/// What is said of an object beside its triangles.
+struct Item {
+    mesh: Arc<Mesh>,
+    /// Index into the looks.
+    look: usize,
+    model: Mat4,
+    visible: bool,
+    alpha_blend: bool,
+    double_sided: bool,
+    casts_shadow: bool,
+    receives_light: bool,
+}
+
+/// What fills the pass's slots for a material.
+type Look = IndexMap<String, Choices>;
+
+/// Lights of one kind.
+struct Kind {
+    choice: Choice,
+    instances: Vec<IndexMap<String, Value>>,
+}
+
+/// Makes the frame; `size` instead of the scene's own, if given.
+pub(super) fn derive(file: &SceneFile, catalog: &Catalog, size: Option<[u32; 2]>) -> Result<Frame, Report> {
+    let scene = &file.parsed.value;
+    let mut examiner = Examiner {
+        parsed: &file.parsed,
+        catalog,
+        assets: super::assets::Assets::new(&file.folder),
+        errors: Vec::new(),
+    };
+    let size = size.unwrap_or(scene.size);
+    if size.iter().any(|&side| side == 0 || side > MAX_SIZE) {
+        let label = format!("both sides are between 1 and {MAX_SIZE}");
+        examiner.error(
+            &[Step::Key("size")],
+            codes::SCENE_INVALID,
+            "a picture of this size cannot be made",
+            label,
+        );
+    }
+    let background = Vec3::from(scene.background);
+    if !background.is_finite() || background.min_element() < 0.0 {
+        examiner.error(
+            &[Step::Key("background")],
+            codes::SCENE_INVALID,
+            "the background is no light",
+            "cd/m2, not negative",
+        );
+    }
+    let pass_path = [Step::Key("pass")];
+    examiner.choice(&scene.pass, Some("pass"), &pass_path);
+    let Some(pass) = catalog.module(&scene.pass.module).ok().cloned() else {
+        examiner.finish()?;
+        return Err(Diagnostic::new(codes::UNKNOWN_MODULE, "the scene's pass does not exist").into());
+    };
+
+    let (items, looks, mut lights) = gather(&mut examiner, &pass);
+    let camera = camera(&mut examiner, size);
+    if lights.len() > MAX_LIGHTS {
+        examiner.error(
+            &[Step::Key("lights")],
+            codes::SCENE_INVALID,
+            format!("more than {MAX_LIGHTS} lights"),
+            "too many",
+        );
+    }
+    if !items.iter().any(|i| i.casts_shadow) {
+        lights.iter_mut().for_each(|l| l.casts_shadow = false);
+    }
+    let kinds = kinds(&mut examiner, &lights);
+    let display = display(&mut examiner);
+    examiner.finish()?;
+
+    let mut maker = Maker {
+        catalog,
+        pass: &scene.pass,
+        lights_slot: slot_of(&pass, "light"),
+        double_sided: pass.manifest.params.get("double_sided").is_some_and(|p| p.ty == ParamType::Bool),
+        assets: examiner.assets,
+        planter: Planter::default(),
+        nodes: Vec::new(),
+        recipes: Vec::new(),
+        made: HashMap::new(),
+        materials: Vec::new(),
+    };
+    maker.plant_lights(&kinds);
+    let mut mirrored: HashMap<*const Mesh, Arc<Mesh>> = HashMap::new();
+    let mut draws = Vec::new();
+    for item in &items {
+        let Some(bounds) = item.mesh.bounds().filter(|_| item.visible || item.casts_shadow) else {
+            continue;
+        };
+        let mesh = if item.model.determinant() < 0.0 {
+            let mirror = mirrored
+                .entry(Arc::as_ptr(&item.mesh))
+                .or_insert_with(|| Arc::new(item.mesh.mirrored()));
+            Arc::clone(mirror)
+        } else {
+            Arc::clone(&item.mesh)
+        };
+        draws.push(Draw {
+            mesh,
+            material: maker.material(&looks, item),
+            model: item.model,
+            bounds,
+            visible: item.visible,
+            alpha_blend: item.alpha_blend,
+            double_sided: item.double_sided,
+            casts_shadow: item.casts_shadow,
+        });
+    }
+    let display = display.map(|choice| {
+        let mut planter = Planter::default();
+        let node = planter.plant(&choice, "main", catalog, &mut maker.assets);
+        Material {
+            recipe: Arc::new(node),
+            settings: planter.settings,
+        }
+    });
+    let lights = maker.nodes.iter().zip(kinds);
+    Ok(Frame {
+        camera: camera.ok_or_else(|| Diagnostic::new(codes::SCENE_INVALID, "the scene has no camera"))?,
+        size,
+        time: 0.0,
+        background,
+        lights: lights
+            .map(|(node, kind)| Lights {
+                node: node.clone(),
+                instances: kind.instances,
+            })
+            .collect(),
+        materials: maker.materials,
+        draws,
+        display,
+    })
+}
+
+/// The slot of a module that takes modules of this category.
+fn slot_of(module: &Module, interface: &str) -> Option<String> {
+    let found = module.manifest.slots.iter().find(|(_, slot)| slot.interface == interface);
+    found.map(|(name, _)| name.clone())
+}
+
+/// Checks and collects what the scene and its glTF files hold.
+fn gather(examiner: &mut Examiner, pass: &Module) -> (Vec<Item>, Vec<Look>, Vec<LightDecl>) {
+    let scene = &examiner.parsed.value;
+    let slots = &pass.manifest.slots;
+    let mut meshes: HashMap<&str, Arc<Mesh>> = HashMap::new();
+    for (name, shape) in &scene.meshes {
+        match shape.build(|file| examiner.assets.gltf(file)) {
+            Ok(mesh) => {
+                meshes.insert(name, Arc::new(mesh));
+            }
+            Err(error) => {
+                let code = super::code_of(&error);
+                let path = [Step::Key("meshes"), Step::Key(name)];
+                examiner.error(&path, code, format!("the mesh `{name}` cannot be made"), error.to_string());
+            }
+        }
+    }
+    let mut looks: Vec<Look> = Vec::new();
+    for (name, look) in &scene.materials {
+        examiner.fill(look, pass, slots, &[Step::Key("materials"), Step::Key(name)]);
+        looks.push(look.clone());
+    }
+    let mut items = Vec::new();
+    for (i, object) in scene.objects.iter().enumerate() {
+        let path = [Step::Key("objects"), Step::Index(i)];
+        let model = view::transform(examiner, &path, object.translate, object.rotate, object.scale);
+        let mesh = meshes.get(object.mesh.as_str()).cloned();
+        if mesh.is_none() && !scene.meshes.contains_key(&object.mesh) {
+            unknown(
+                examiner,
+                &join(&path, &[Step::Key("mesh")]),
+                "mesh",
+                &object.mesh,
+                scene.meshes.keys(),
+            );
+        }
+        let look = scene.materials.get_index_of(&object.material);
+        if look.is_none() {
+            let at = join(&path, &[Step::Key("material")]);
+            unknown(examiner, &at, "material", &object.material, scene.materials.keys());
+        }
+        if let (Some(mesh), Some(look)) = (mesh, look) {
+            items.push(Item {
+                mesh,
+                look,
+                model,
+                visible: object.visible,
+                alpha_blend: object.alpha_blend,
+                double_sided: object.double_sided,
+                casts_shadow: object.casts_shadow,
+                receives_light: object.receives_light,
+            });
+        }
+    }
+    for (i, light) in scene.lights.iter().enumerate() {
+        check_light(examiner, light, &[Step::Key("lights"), Step::Index(i)]);
+    }
+    let mut lights = scene.lights.clone();
+    for i in 0..scene.gltf.len() {
+        include_file(examiner, pass, i, &mut items, &mut looks, &mut lights);
+    }
+    (items, looks, lights)
+}
+
+fn include_file(
+    examiner: &mut Examiner,
+    pass: &Module,
+    index: usize,
+    items: &mut Vec<Item>,
+    looks: &mut Vec<Look>,
+    lights: &mut Vec<LightDecl>,
+) {
+    let decl = &examiner.parsed.value.gltf[index];
+    let path = [Step::Key("gltf"), Step::Index(index)];
+    examiner.fill(&decl.fill, pass, &pass.manifest.slots, &join(&path, &[Step::Key("fill")]));
+    for (kind, choice) in &decl.visibility {
+        examiner.choice(
+            choice,
+            Some("visibility"),
+            &join(&path, &[Step::Key("visibility"), Step::Key(kind)]),
+        );
+    }
+    let world = view::transform(examiner, &path, decl.translate, decl.rotate, decl.scale);
+    let asset = match examiner.assets.gltf(&decl.file) {
+        Ok(asset) => asset,
+        Err(error) => {
+            let code = super::code_of_gltf(&error);
+            let at = join(&path, &[Step::Key("file")]);
+            examiner.error(&at, code, format!("`{}` cannot be drawn", decl.file), error.to_string());
+            return;
+        }
+    };
+    let first = looks.len();
+    for material in &asset.materials {
+        let mut look = decl.fill.clone();
+        if let Some((module, choice)) = include::material(examiner, decl, material, &path) {
+            examiner.choice(&choice, Some(&module.category), &path);
+            if let Some(slot) = slot_of(pass, &module.category) {
+                look.insert(slot, Choices::One(Box::new(choice)));
+            }
+        }
+        looks.push(look);
+    }
+    for object in &asset.objects {
+        let model = world * object.model;
+        // A file hides things by shrinking them to nothing.
+        if !model.inverse().is_finite() {
+            continue;
+        }
+        let material = &asset.materials[object.material];
+        items.push(Item {
+            mesh: Arc::clone(&object.mesh),
+            look: first + object.material,
+            model,
+            visible: true,
+            alpha_blend: material.alpha == Alpha::Blend,
+            double_sided: material.double_sided,
+            casts_shadow: true,
+            receives_light: true,
+        });
+    }
+    if decl.lights {
+        for light in &asset.lights {
+            let made = include::light(examiner, decl, light, &world, &path);
+            if let Some(made) = &made {
+                check_light(examiner, made, &path);
+            }
+            lights.extend(made);
+        }
+    }
+}
+
+fn unknown<'n>(examiner: &mut Examiner, path: &[Step], what: &str, name: &str, known: impl Iterator<Item = &'n String>) {
+    let span = examiner.parsed.places.find_near(path);
+    examiner.errors.push(
+        Diagnostic::new(codes::UNKNOWN_SCENE_NAME, format!("the scene has no {what} `{name}`"))
+            .at(&examiner.parsed.file, span, format!("no such {what}"))
+            .suggest(name, what, known.map(String::as_str)),
+    );
+}
+
+fn check_light(examiner: &mut Examiner, light: &LightDecl, path: &[Step]) {
+    // The declaration is a choice with fields: it is checked as one.
+    examiner.choice(&as_choice(light), Some("light"), path);
+    let Ok(module) = examiner.catalog.module(&light.module).cloned() else {
+        return;
+    };
+    let fields = join(path, &[Step::Key("fields")]);
+    examiner.values(&light.fields, &module, &module.manifest.instances, &fields);
+    for (name, param) in &module.manifest.instances {
+        let value = light.fields.get(name).unwrap_or(&param.default);
+        let zero = |v: &Value| matches!(v, Value::List(v) if v.iter().all(|&x| x == 0.0));
+        if param.role.as_deref() == Some("direction") && typed(param, value).is_ok() && zero(value) {
+            let at = join(&fields, &[Step::Key(name)]);
+            examiner.error(&at, codes::SCENE_INVALID, "the light has no direction", "all components are 0");
+        }
+    }
+    let at = join(path, &[Step::Key("visibility")]);
+    if let Some(visibility) = &light.visibility {
+        if slot_of(&module, "visibility").is_none() {
+            let message = format!("`{}` has no slot for visibility", module.name);
+            examiner.error(&at, codes::UNKNOWN_SLOT, message, "cannot stand anywhere");
+        }
+        examiner.choice(visibility, Some("visibility"), &at);
+    }
+}
+
+/// A light's kind without what fills its slot for visibility.
+fn as_choice(light: &LightDecl) -> Choice {
+    Choice {
+        module: light.module.clone(),
+        fill: light.fill.clone(),
+        freeze: light.freeze.clone(),
+        params: light.params.clone(),
+        ..Choice::default()
+    }
+}
+
+/// Groups lights by module and visibility, in the order of the first of each.
+fn kinds(examiner: &mut Examiner, lights: &[LightDecl]) -> Vec<Kind> {
+    let mut kinds: Vec<Kind> = Vec::new();
+    for light in lights {
+        let Ok(module) = examiner.catalog.module(&light.module) else {
+            continue;
+        };
+        let mut choice = as_choice(light);
+        if let (Some(visibility), Some(slot), true) = (&light.visibility, slot_of(module, "visibility"), light.casts_shadow) {
+            choice.fill.insert(slot, Choices::One(Box::new(visibility.clone())));
+        }
+        match kinds.iter_mut().find(|kind| kind.choice == choice) {
+            Some(kind) => kind.instances.push(light.fields.clone()),
+            None => kinds.push(Kind {
+                choice,
+                instances: vec![light.fields.clone()],
+            }),
+        }
+    }
+    kinds
+}
+
+/// The camera that is declared, or the first of the first glTF file that has one.
+fn camera(examiner: &mut Examiner, size: [u32; 2]) -> Option<crate::frame::Camera> {
+    let scene = &examiner.parsed.value;
+    if let Some(decl) = &scene.camera {
+        return Some(view::camera(examiner, decl, size));
+    }
+    for (i, decl) in scene.gltf.iter().enumerate() {
+        let Ok(asset) = examiner.assets.gltf(&decl.file) else { continue };
+        let Some(camera) = asset.cameras.first() else { continue };
+        let mut camera = camera.clone();
+        camera.world = view::placed(decl.translate, decl.rotate, decl.scale) * camera.world;
+        let made = view::gltf_camera(&camera, size);
+        if made.is_none() {
+            let path = [Step::Key("gltf"), Step::Index(i)];
+            let message = format!("`{}`: the camera `{}` cannot be used", decl.file, camera.name);
+            examiner.error(&path, codes::ASSET_UNSUPPORTED, message, "it is orthographic or not finite");
+        }
+        return made;
+    }
+    examiner.error(
+        &[],
+        codes::SCENE_INVALID,
+        "the scene has no camera",
+        "neither `camera` nor a glTF file with one",
+    );
+    None
+}
+
+/// The display pass with the post effects in its slot.
+fn display(examiner: &mut Examiner) -> Option<Choice> {
+    let scene = &examiner.parsed.value;
+    let path = [Step::Key("display")];
+    let Some(declared) = &scene.display else {
+        if scene.post.is_some() {
+            let message = "post effects without a display pass";
+            examiner.error(&[Step::Key("post")], codes::SCENE_INVALID, message, "nothing would show them");
+        }
+        return None;
+    };
+    let mut choice = declared.clone();
+    examiner.choice(declared, Some("pass"), &path);
+    if let (Some(post), Ok(module)) = (&scene.post, examiner.catalog.module(&choice.module)) {
+        let Some(slot) = slot_of(module, "post") else {
+            let message = format!("`{}` has no slot for post effects", module.name);
+            examiner.error(&[Step::Key("post")], codes::UNKNOWN_SLOT, message, "cannot stand anywhere");
+            return None;
+        };
+        for (i, effect) in post.iter().enumerate() {
+            examiner.choice(effect, Some("post"), &[Step::Key("post"), Step::Index(i)]);
+        }
+        choice.fill.insert(slot, Choices::Many(post.clone()));
+    }
+    Some(choice)
+}
+
+/// Makes each recipe once.
+struct Maker<'a> {
+    catalog: &'a Catalog,
+    pass: &'a Choice,
+    lights_slot: Option<String>,
+    double_sided: bool,
+    assets: super::assets::Assets,
+    /// With the lights planted.
+    planter: Planter,
+    /// The lights' nodes, one for each kind.
+    nodes: Vec<Node>,
+    recipes: Vec<Arc<Node>>,
+    made: HashMap<(usize, bool, bool), usize>,
+    materials: Vec<Material>,
+}
+
+impl Maker<'_> {
+    fn plant_lights(&mut self, kinds: &[Kind]) {
+        if let Some(slot) = &self.lights_slot {
+            let choices = Choices::Many(kinds.iter().map(|k| k.choice.clone()).collect());
+            let place = format!("main.{slot}");
+            self.nodes = self.planter.plant_list(&choices, &place, self.catalog, &mut self.assets);
+        }
+    }
+
+    /// Index of the material for an object.
+    fn material(&mut self, looks: &[Look], item: &Item) -> usize {
+        let key = (item.look, item.receives_light, item.double_sided && self.double_sided);
+        if let Some(&known) = self.made.get(&key) {
+            return known;
+        }
+        let (mut planter, lights) = if item.receives_light {
+            (self.planter.clone(), self.nodes.clone())
+        } else {
+            (Planter::default(), Vec::new())
+        };
+        let mut root = self.pass.clone();
+        for (slot, choices) in &looks[item.look] {
+            root.fill.insert(slot.clone(), choices.clone());
+        }
+        if key.2 {
+            root.freeze.insert("double_sided".to_owned(), Value::Bool(true));
+        }
+        let mut node = planter.plant(&root, "main", self.catalog, &mut self.assets);
+        if let Some(slot) = &self.lights_slot {
+            node.fill.insert(slot.clone(), Filling::Many(lights));
+        }
+        let recipe = match self.recipes.iter().find(|known| ***known == node) {
+            Some(known) => Arc::clone(known),
+            None => {
+                self.recipes.push(Arc::new(node));
+                Arc::clone(&self.recipes[self.recipes.len() - 1])
+            }
+        };
+        self.materials.push(Material {
+            recipe,
+            settings: Settings {
+                params: planter.settings.params,
+                textures: planter.settings.textures,
+            },
+        });
+        self.made.insert(key, self.materials.len() - 1);
+        self.materials.len() - 1
+    }
+}

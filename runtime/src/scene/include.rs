@@ -1,0 +1,170 @@
+//! Whole glTF files: their words, by way of the manifests, to choices of modules.
+
+use std::sync::Arc;
+
+use glam::{Mat4, Vec3};
+use indexmap::IndexMap;
+use shadewright_compiler::Module;
+use shadewright_compiler::diagnostics::{Diagnostic, codes};
+use shadewright_compiler::manifest::{ResourceKind, Step, Value};
+
+use super::check::Examiner;
+use super::{Choice, Choices, GltfDecl, LightDecl, Picture};
+use crate::mesh::gltf::{Alpha, Light, Material};
+
+/// The module that represents a thing of glTF.
+pub(super) fn representing(examiner: &mut Examiner, decl: &GltfDecl, thing: &str, place: &str, path: &[Step]) -> Option<Arc<Module>> {
+    if let Some(named) = decl.modules.get(thing) {
+        return examiner.module(named, &super::check::join(path, &[Step::Key("modules")]));
+    }
+    let fitting: Vec<Arc<Module>> = examiner
+        .catalog
+        .modules()
+        .filter(|m| m.manifest.represents.iter().any(|r| r == thing))
+        .cloned()
+        .collect();
+    if let [only] = fitting.as_slice() {
+        return Some(Arc::clone(only));
+    }
+    let span = examiner.parsed.places.find_near(path);
+    let error = Diagnostic::new(
+        codes::ASSET_UNSUPPORTED,
+        format!("`{}`: no single module stands for `{thing}`", decl.file),
+    )
+    .at(&examiner.parsed.file, span, place.to_owned());
+    examiner.errors.push(if fitting.is_empty() {
+        error.note(format!("a module whose manifest says `represents: [\"{thing}\"]` would draw it"))
+    } else {
+        let names: Vec<&str> = fitting.iter().map(|m| m.name.as_str()).collect();
+        error.note(format!(
+            "name one of {} under `modules`: {{\"{thing}\": \"{}\"}}",
+            names.join(", "),
+            names[0]
+        ))
+    });
+    None
+}
+
+/// A file's material as a choice of the module that represents materials.
+pub(super) fn material(examiner: &mut Examiner, decl: &GltfDecl, material: &Material, path: &[Step]) -> Option<(Arc<Module>, Choice)> {
+    let place = format!("the material `{}`", material.name);
+    let module = representing(examiner, decl, "gltf:material", &place, path)?;
+    let mut choice = Choice::new(module.name.clone());
+    let mut used: Vec<&str> = by_role(&mut choice, &module, &material.factors);
+    for (name, texture) in &material.textures {
+        let slot = module
+            .manifest
+            .slots
+            .iter()
+            .find_map(|(slot, s)| Some((slot, s.represents.get(*name)?)));
+        let Some((slot, filler)) = slot else {
+            if *name == "gltf:occlusionTexture" {
+                // It darkens only what comes from all sides; light from lamps and the sun is not its business.
+                log::warn!("`{}`: {place}: {name} has no module and is left out", decl.file);
+                used.push("gltf:occlusionStrength");
+                continue;
+            }
+            let message = format!("`{}`: `{}` has no slot for {name}", decl.file, module.name);
+            examiner.error(path, codes::ASSET_UNSUPPORTED, message, place.clone());
+            continue;
+        };
+        let Some(filler) = examiner.module(filler, path) else {
+            continue;
+        };
+        let mut map = Choice::new(filler.name.clone());
+        used.extend(by_role(&mut map, &filler, &material.factors));
+        let texture_of = filler
+            .manifest
+            .resources
+            .iter()
+            .find(|(_, r)| matches!(r.kind, ResourceKind::Texture { .. }));
+        if let Some((resource, _)) = texture_of {
+            map.textures.insert(resource.clone(), Picture::Loaded(Arc::clone(texture)));
+        }
+        choice.fill.insert(slot.clone(), Choices::One(Box::new(map)));
+    }
+    for (name, value) in &material.factors {
+        if !used.contains(name) && !is_neutral(name, value) {
+            let message = format!("`{}`: `{}` has no parameter for {name}", decl.file, module.name);
+            examiner.error(path, codes::ASSET_UNSUPPORTED, message, place.clone());
+        }
+    }
+    if let Alpha::Blend = material.alpha {
+        log::debug!("`{}`: {place} is blended", decl.file);
+    } else if choice
+        .params
+        .iter()
+        .any(|(name, _)| role_of(&module, name) == Some("gltf:baseColorFactor.a"))
+    {
+        // Without blending alpha means nothing.
+        choice
+            .params
+            .retain(|name, _| role_of(&module, name) != Some("gltf:baseColorFactor.a"));
+    }
+    Some((module, choice))
+}
+
+fn role_of<'m>(module: &'m Module, param: &str) -> Option<&'m str> {
+    module.manifest.params.get(param)?.role.as_deref()
+}
+
+/// Values that leave the picture as it is, so that a module needs no parameter for them.
+fn is_neutral(name: &str, value: &Value) -> bool {
+    match (name, value) {
+        ("gltf:emissiveFactor", Value::List(rgb)) => rgb.iter().all(|&x| x == 0.0),
+        ("gltf:baseColorFactor", Value::List(rgb)) => rgb.iter().all(|&x| x == 1.0),
+        (_, Value::Number(x)) => *x == 1.0,
+        _ => false,
+    }
+}
+
+/// Sets the parameters whose roles are among the factors; the roles that were found.
+fn by_role<'f>(choice: &mut Choice, module: &Module, factors: &IndexMap<&'f str, Value>) -> Vec<&'f str> {
+    let mut used = Vec::new();
+    for (name, param) in &module.manifest.params {
+        let found = param.role.as_deref().and_then(|role| factors.get_key_value(role));
+        if let Some((role, value)) = found {
+            choice.params.insert(name.clone(), value.clone());
+            used.push(*role);
+        }
+    }
+    used
+}
+
+/// A file's light as a declaration. `world` is where the file is placed.
+pub(super) fn light(examiner: &mut Examiner, decl: &GltfDecl, light: &Light, world: &Mat4, path: &[Step]) -> Option<LightDecl> {
+    let place = format!("the light `{}`", light.name);
+    let module = representing(examiner, decl, light.kind, &place, path)?;
+    let moved = |value: &Value, how: &dyn Fn(Vec3) -> Vec3| match value {
+        Value::List(v) if v.len() == 3 => {
+            let p = how(Vec3::new(v[0] as f32, v[1] as f32, v[2] as f32));
+            Value::List(p.to_array().map(f64::from).to_vec())
+        }
+        other => other.clone(),
+    };
+    let mut fields = IndexMap::new();
+    for (role, value) in &light.fields {
+        let field = module.manifest.instances.iter().find(|(_, p)| p.role.as_deref() == Some(role));
+        let Some((field, _)) = field else {
+            let message = format!("`{}`: `{}` has no field for {role}", decl.file, module.name);
+            examiner.error(path, codes::ASSET_UNSUPPORTED, message, place.clone());
+            continue;
+        };
+        let value = match *role {
+            "position" => moved(value, &|p| world.transform_point3(p)),
+            "direction" => moved(value, &|d| world.transform_vector3(d).normalize_or(Vec3::NEG_Y)),
+            _ => value.clone(),
+        };
+        fields.insert(field.clone(), value);
+    }
+    Some(LightDecl {
+        name: Some(light.name.clone()),
+        module: module.name.clone(),
+        fields,
+        fill: IndexMap::new(),
+        freeze: IndexMap::new(),
+        params: IndexMap::new(),
+        visibility: decl.visibility.get(light.kind).cloned(),
+        casts_shadow: true,
+    })
+}

@@ -1,0 +1,110 @@
+//! Scenes: `*.scene.ron` files, and the smallest recipes that draw them.
+//!
+//! A scene names modules, fills their slots and sets their parameters. Nothing here knows a module by name: what a module has is asked of
+//! its manifest, and slots are found by the category that they take (`light`, `visibility`, `post`).
+
+mod assets;
+mod check;
+mod choice;
+mod derive;
+mod format;
+mod include;
+mod path;
+mod recipe;
+#[cfg(test)]
+mod tests;
+mod view;
+
+pub use assets::MAX_PICTURE;
+pub use choice::{Choice, Choices, Picture};
+pub use derive::{MAX_LIGHTS, MAX_SIZE};
+pub use format::{CameraDecl, GltfDecl, LightDecl, ObjectDecl, Scene};
+
+use std::path::{Path, PathBuf};
+
+use shadewright_compiler::diagnostics::{Diagnostic, codes};
+use shadewright_compiler::manifest::{Parsed, parse};
+use shadewright_compiler::{Catalog, Report, limits};
+
+use crate::frame::Frame;
+use crate::mesh::MeshError;
+use crate::mesh::gltf::GltfError;
+
+/// A scene with the text it was read from.
+#[derive(Clone, Debug)]
+pub struct SceneFile {
+    parsed: Parsed<Scene>,
+    folder: PathBuf,
+}
+
+impl SceneFile {
+    /// Reads a `*.scene.ron` file.
+    ///
+    /// # Errors
+    /// The file cannot be read, is no RON, or no scene.
+    pub fn read(path: &Path) -> Result<Self, Report> {
+        let name = path.display().to_string();
+        let unreadable = |why: String| Report::from(Diagnostic::new(codes::UNREADABLE_FILE, format!("cannot read `{name}`: {why}")));
+        let size = std::fs::metadata(path).map_err(|e| unreadable(e.to_string()))?.len();
+        if size > limits::FILE_SIZE as u64 {
+            return Err(
+                Diagnostic::new(codes::FILE_TOO_LARGE, format!("`{name}` is too large: {size} bytes"))
+                    .note(format!("at most {} bytes are read", limits::FILE_SIZE))
+                    .into(),
+            );
+        }
+        let text = std::fs::read_to_string(path).map_err(|e| unreadable(e.to_string()))?;
+        Self::parse(&name, &text, path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Reads a scene from its text. `name` is what errors call it; files that it names are relative to `folder`.
+    ///
+    /// # Errors
+    /// The text is no RON, or no scene.
+    pub fn parse(name: &str, text: &str, folder: &Path) -> Result<Self, Report> {
+        Ok(Self {
+            parsed: parse(name, text)?,
+            folder: folder.to_owned(),
+        })
+    }
+
+    /// What is declared.
+    pub fn scene(&self) -> &Scene {
+        &self.parsed.value
+    }
+
+    /// The scene with one value changed: `lights[0].fields.intensity`, `objects[pot].translate`, `post[0].fill.exposure.params.ev100`.
+    /// The value is RON; a text that is none is taken as a string (`900 lm`). A field or an entry of a map that is not there is added.
+    ///
+    /// # Errors
+    /// The path leads nowhere, or what comes out is no scene.
+    pub fn set(&self, path: &str, value: &str) -> Result<Self, Report> {
+        let file = &self.parsed.file;
+        let text = path::set(&file.name, &file.text, path, value)?;
+        Self::parse(&file.name, &text, &self.folder)
+    }
+
+    /// What a renderer draws: camera, objects, lights, and the recipes that are derived from them. `size` (width, height) is instead of
+    /// the scene's own. Files that the scene names are read.
+    ///
+    /// # Errors
+    /// All that the scene says of modules, names, numbers and files that cannot be, located in its text.
+    pub fn frame(&self, catalog: &Catalog, size: Option<[u32; 2]>) -> Result<Frame, Report> {
+        derive::derive(self, catalog, size)
+    }
+}
+
+fn code_of_gltf(error: &GltfError) -> &'static str {
+    match error {
+        GltfError::Unsupported { .. } => codes::ASSET_UNSUPPORTED,
+        GltfError::Unreadable { .. } | GltfError::Damaged { .. } => codes::ASSET_UNREADABLE,
+    }
+}
+
+fn code_of(error: &MeshError) -> &'static str {
+    match error {
+        MeshError::Gltf(error) => code_of_gltf(error),
+        MeshError::NoSuchMesh(_) => codes::UNKNOWN_SCENE_NAME,
+        MeshError::Length { .. } | MeshError::Segments { .. } | MeshError::Inconsistent(_) => codes::SCENE_INVALID,
+    }
+}
