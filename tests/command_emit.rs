@@ -312,6 +312,8 @@ fn check_finds_all_that_is_wrong() {
         .find(|item| item["ok"] == false)
         .expect("one is wrong");
     assert_eq!(wrong["diagnostics"][0]["code"], "SW0202");
+    let from_input = run_with_input(&["check", "-"], "\"lambert\"");
+    assert_eq!((from_input.status, from_input.text()), (0, "ok     recipe -\n"));
     bad(&["check", folder.path().join("absent").to_str().unwrap()], 1, &["absent"]);
     bad(&["check", folder.path().to_str().unwrap()], 1, &["holds no module"]);
 }
