@@ -112,7 +112,8 @@ fn a_folder_is_all_that_a_module_needs() {
     wrong(&module, "half.wgsl:");
 }
 
-/// Catches folders of modules in the wrong order, and a file list in JSON that names other files than were made.
+/// Catches folders of modules in the wrong order, a file list in JSON that names other files than were made, and a check of a module's
+/// neighbours instead of it.
 #[test]
 fn the_last_folder_counts() {
     let folders = [tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder")];
@@ -131,9 +132,11 @@ fn the_last_folder_counts() {
     let emitted = |a: &str, b: &str| good(&["emit", recipe, "--modules", a, "--modules", b]).text().to_owned();
     assert!(emitted(first, second).contains("vec3f(0.875)"));
     assert!(emitted(second, first).contains("vec3f(0.125)"));
-    // A module's folder, its category's, and the whole are the same to check.
-    for path in [format!("{first}/brdf/mine"), format!("{first}/brdf"), first.to_owned()] {
-        assert_eq!(good(&["check", &path]).text(), "ok     module brdf/mine\n");
+    // A module's folder is that module; its category's folder and the whole are all modules in them.
+    good(&["new", "brdf", "other", "--dir", first]);
+    assert_eq!(good(&["check", &format!("{first}/brdf/mine")]).text(), "ok     module brdf/mine\n");
+    for path in [&format!("{first}/brdf"), first] {
+        assert_eq!(good(&["check", path]).text(), "ok     module brdf/mine\nok     module brdf/other\n");
     }
 }
 
