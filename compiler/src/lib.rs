@@ -24,6 +24,6 @@ pub use diagnostics::{Diagnostic, Report};
 pub use emit::{Target, emit};
 pub use library::Library;
 pub use naga;
-pub use program::{Program, Recipe, Why};
+pub use program::{LinkPlan, Program, Recipe, Why};
 pub use reflect::Reflection;
 pub use validate::Validated;

@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
+use crate::hash::structural_hash;
 use crate::link::{link, write_source};
 use crate::manifest::{Node, PassDecl, parse_recipe};
 use crate::parse::chain;
@@ -119,10 +120,18 @@ impl Catalog {
     /// # Errors
     /// Anything wrong with the recipe or with the modules it reaches.
     pub fn compile(&self, recipe: &Recipe, pass: &str) -> Result<Program, Report> {
+        self.finish(self.plan(recipe, pass)?)
+    }
+
+    /// The first half of [`Catalog::compile`]: everything that can be known before anything is written.
+    ///
+    /// # Errors
+    /// Anything wrong with the recipe or with the modules it reaches.
+    pub fn plan(&self, recipe: &Recipe, pass: &str) -> Result<LinkPlan, Report> {
         let tree = resolve(self, recipe)?;
         let instances = Instances::find(self, &tree);
         if pass == "main" {
-            return self.finish(tree, instances, &Roots::Main, pass);
+            return self.plan_tree(tree, instances, &Roots::Main, pass);
         }
         let found = pass.rsplit_once('.').and_then(|(name, own)| {
             let instance = instances.list.iter().position(|i| i.name == name)?;
@@ -135,7 +144,7 @@ impl Catalog {
                     instance,
                     entry: entry.clone(),
                 };
-                self.finish(tree, instances, &roots, pass)
+                self.plan_tree(tree, instances, &roots, pass)
             }
             Some((instance, own, PassDecl::Draw { root, inherit, .. })) => {
                 let node = &tree.nodes[instances.list[instance].node];
@@ -149,7 +158,7 @@ impl Catalog {
                 let module = self.module_at(&root.module, None, &place)?;
                 let tree = resolve_root(self, module, &root, place)?;
                 let instances = Instances::find(self, &tree);
-                self.finish(tree, instances, &Roots::Main, pass)
+                self.plan_tree(tree, instances, &Roots::Main, pass)
             }
             None => {
                 let mut known = vec!["main".to_owned()];
@@ -163,12 +172,24 @@ impl Catalog {
         }
     }
 
-    pub(crate) fn finish(&self, tree: Tree, instances: Instances, roots: &Roots, pass: &str) -> Result<Program, Report> {
+    pub(crate) fn plan_tree(&self, tree: Tree, instances: Instances, roots: &Roots, pass: &str) -> Result<LinkPlan, Report> {
         let plan = plan(self, tree, instances, roots)?;
-        let module = link(&plan);
-        let hash = crate::hash::structural_hash(&module);
+        Ok(LinkPlan {
+            plan,
+            pass: pass.to_owned(),
+        })
+    }
+
+    /// The second half of [`Catalog::compile`]: links, validates and reflects.
+    ///
+    /// # Errors
+    /// The linked module does not pass naga's validator.
+    pub fn finish(&self, plan: LinkPlan) -> Result<Program, Report> {
+        let module = plan.link();
+        let hash = structural_hash(&module);
+        let LinkPlan { plan, pass } = plan;
         let validated = validate(module).map_err(|error| located(&plan, &error))?;
-        let reflection = reflect(self, &plan, &validated, hash, pass);
+        let reflection = reflect(self, &plan, &validated, hash, &pass);
         Ok(Program {
             validated,
             reflection,
@@ -176,6 +197,25 @@ impl Catalog {
             plan,
             wgsl: OnceLock::new(),
         })
+    }
+}
+
+/// What a pass will hold, under which names and bindings: the common ground of both written forms.
+#[derive(Debug)]
+pub struct LinkPlan {
+    plan: Plan,
+    pass: String,
+}
+
+impl LinkPlan {
+    /// Writes the plan as IR, which nobody has validated yet.
+    pub fn link(&self) -> naga::Module {
+        link(&self.plan)
+    }
+
+    /// Writes the plan as source.
+    pub fn source(&self) -> String {
+        write_source(&self.plan)
     }
 }
 
