@@ -250,7 +250,8 @@ impl Gpu {
         // The receiver lives until the end of this function, and nobody else waits for what is sent.
         staging.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
         self.wait()?;
-        match receiver.try_recv() {
+        // Another thread's poll may be the one that runs the callback, a moment after this thread's has returned.
+        match receiver.recv_timeout(PATIENCE) {
             Ok(Ok(())) => {}
             Ok(Err(error)) => return Err(failed(error.to_string())),
             Err(_) => return Err(failed("the buffer was not mapped".into())),
