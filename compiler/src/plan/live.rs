@@ -4,6 +4,7 @@
 //! where the fragment stage reads them. The analysis starts with no member alive and repeats until nothing is added.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 
 use naga::{Binding, Block, Expression, Handle, ShaderStage, Statement, Type, TypeInner};
 
@@ -72,6 +73,7 @@ fn settle(plan: &mut Plan) {
                 pure_calls: HashMap::new(),
                 called: Vec::new(),
                 function,
+                results: plan.functions[index].results(&plan.homes),
                 info,
                 structs: &mut plan.structs,
                 params: &mut plan.live_params,
@@ -193,6 +195,7 @@ struct Walker<'a> {
     /// Functions that living calls reach.
     called: Vec<usize>,
     function: &'a naga::Function,
+    results: &'a [(Handle<Expression>, Range<usize>)],
     info: &'a naga::valid::FunctionInfo,
     structs: &'a mut Structs,
     params: &'a mut HashSet<(usize, u32)>,
@@ -216,20 +219,16 @@ impl<'a> Walker<'a> {
 
     /// Whether the text of an expression holds a call that cannot go, an atomic operation or the like.
     fn holds_action(&self, handle: Handle<Expression>) -> bool {
-        let span = self.function.expressions.get_span(handle).to_range().unwrap_or_default();
-        self.function.expressions.iter().take(handle.index() + 1).any(|(h, e)| {
-            let inside = || {
-                self.function
-                    .expressions
-                    .get_span(h)
-                    .to_range()
-                    .is_some_and(|s| span.start <= s.start && s.end <= span.end)
-            };
-            let acts = match e {
-                Expression::CallResult(callee) => !self.can_go(*callee),
-                other => is_result(other),
-            };
-            acts && inside()
+        let Some(span) = self.function.expressions.get_span(handle).to_range() else {
+            return false;
+        };
+        self.results.iter().any(|(result, place)| {
+            let inside = result.index() <= handle.index() && span.start <= place.start && place.end <= span.end;
+            inside
+                && match self.function.expressions[*result] {
+                    Expression::CallResult(callee) => !self.can_go(callee),
+                    _ => true,
+                }
         })
     }
 
@@ -439,19 +438,6 @@ pub fn struct_of(
         _ => return None,
     };
     structs.id(home, ty)
-}
-
-/// Whether an expression is the result of a statement.
-fn is_result(expression: &Expression) -> bool {
-    matches!(
-        expression,
-        Expression::CallResult(_)
-            | Expression::AtomicResult { .. }
-            | Expression::WorkGroupUniformLoadResult { .. }
-            | Expression::RayQueryProceedResult
-            | Expression::SubgroupBallotResult
-            | Expression::SubgroupOperationResult { .. }
-    )
 }
 
 /// Operands of an expression.

@@ -132,6 +132,17 @@ impl Planned {
         }
     }
 
+    /// Results of its calls and other statements, with their places.
+    pub fn results<'p>(&self, homes: &'p [Home]) -> &'p [(Handle<naga::Expression>, std::ops::Range<usize>)] {
+        let unit = &homes[self.home].unit;
+        let index = match self.body {
+            Body::Function(handle) => handle.index(),
+            Body::Entry(index) => unit.ir.functions.len() + index,
+            Body::Combined { .. } => return &[],
+        };
+        &unit.results[index]
+    }
+
     /// Types of its expressions.
     pub fn info<'p>(&self, homes: &'p [Home]) -> Option<&'p naga::valid::FunctionInfo> {
         let info = &homes[self.home].unit.info;
