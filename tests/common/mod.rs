@@ -1,5 +1,8 @@
 //! What the integration tests share.
 
+// Every test program that includes this uses a part of it.
+#![allow(dead_code)]
+
 use std::sync::{Arc, OnceLock};
 
 use serde_json::{Value as Json, json};
