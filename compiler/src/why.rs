@@ -39,16 +39,16 @@ pub fn why(plan: &Plan, reflection: &Reflection, name: &str) -> Vec<Why> {
             ParamPlace::Override { name } => name,
             ParamPlace::Constant { .. } => &param.name,
         };
-        if emitted == name || param.name == name || format!("{}.{}", param.instance, param.name) == name {
-            if let Some(home) = plan.instances.list.iter().position(|i| i.name == param.instance) {
-                found.push(answer(
-                    plan,
-                    name,
-                    "parameter",
-                    home,
-                    user(plan, home, |e, unit| reads_param(e, unit, &param.name)),
-                ));
-            }
+        if (emitted == name || param.name == name || format!("{}.{}", param.instance, param.name) == name)
+            && let Some(home) = plan.instances.list.iter().position(|i| i.name == param.instance)
+        {
+            found.push(answer(
+                plan,
+                name,
+                "parameter",
+                home,
+                user(plan, home, |e, unit| reads_param(e, unit, &param.name)),
+            ));
         }
     }
     if let Some(block) = plan.blocks.iter().find(|b| format!("{}_params", GROUPS[b.group as usize]) == name) {

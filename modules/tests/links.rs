@@ -55,7 +55,10 @@ fn nothing_more_than_needed() {
 /// Catches a constant that does not prune its branch.
 #[test]
 fn double_sided() {
-    let program = compile(r#"(module: "forward", freeze: {"double_sided": true})"#, "main");
+    let program = compile(
+        r#"(module: "forward", fill: {"lights": ["point"]}, freeze: {"double_sided": true})"#,
+        "main",
+    );
     assert!(program.wgsl().contains("front_facing"));
 }
 

@@ -453,10 +453,10 @@ impl Walker<'_> {
     }
 
     fn pop(&mut self) {
-        if let Some(locals) = &mut self.locals {
-            if locals.scopes.len() > 1 {
-                locals.scopes.pop();
-            }
+        if let Some(locals) = &mut self.locals
+            && locals.scopes.len() > 1
+        {
+            locals.scopes.pop();
         }
     }
 

@@ -186,12 +186,15 @@ fn used_structs(structs: &Structs, ir: &naga::Module, home: usize, ty: Handle<Ty
     }
 }
 
+/// Callee and arguments of a call that can go.
+type PureCall<'a> = (Handle<naga::Function>, &'a [Handle<Expression>]);
+
 struct Walker<'a> {
     homes: &'a [Home],
     functions: &'a [Planned],
     planned: &'a Planned,
     /// Calls of pure functions by their result: they are alive where that is.
-    pure_calls: HashMap<Handle<Expression>, (Handle<naga::Function>, &'a [Handle<Expression>])>,
+    pure_calls: HashMap<Handle<Expression>, PureCall<'a>>,
     /// Functions that living calls reach.
     called: Vec<usize>,
     function: &'a naga::Function,
@@ -365,10 +368,11 @@ impl<'a> Walker<'a> {
         match expression {
             Expression::AccessIndex { base, index } => {
                 let unit = &self.homes[home].unit;
-                if let Expression::GlobalVariable(global) = self.function.expressions[*base] {
-                    if super::bindings::is_params(unit, global) && self.params.insert((home, *index)) {
-                        self.changed = true;
-                    }
+                if let Expression::GlobalVariable(global) = self.function.expressions[*base]
+                    && super::bindings::is_params(unit, global)
+                    && self.params.insert((home, *index))
+                {
+                    self.changed = true;
                 }
                 if let Some(id) = struct_of(home, self.structs, self.info, &unit.ir, *base) {
                     self.changed |= self.structs.enliven(id, *index);

@@ -208,10 +208,10 @@ impl Reach<'_> {
             let mut called = Vec::new();
             calls_in(&unit.ir, function, &function.body, &mut called);
             for handle in called {
-                if !calls.contains_key(&handle) {
+                if let std::collections::hash_map::Entry::Vacant(e) = calls.entry(handle) {
                     let next = self.call(home, handle)?;
                     let id = self.visit(next)?;
-                    calls.insert(handle, id);
+                    e.insert(id);
                 }
             }
             pure = is_pure(&unit, function, &|f| {
