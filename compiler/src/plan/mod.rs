@@ -6,8 +6,10 @@ mod bindings;
 mod branches;
 mod live;
 mod names;
+mod operands;
 mod pure;
 mod reach;
+mod stores;
 mod structs;
 
 use std::collections::{HashMap, HashSet};
@@ -21,10 +23,10 @@ use crate::resolve::{Instances, Tree};
 
 pub use bindings::{Block, GROUPS, PlannedGlobal, declared, declaring, is_instances, is_params};
 pub use branches::{Choice, choice, leaves, reachable};
-pub use live::{is_dead_store, struct_of};
 pub use names::joined;
 pub use pure::can_go;
 pub use reach::{Roots, plan};
+pub use stores::{is_dead_store, struct_of};
 pub use structs::Structs;
 
 /// A unit in the plan: a module instance, or an interface.
