@@ -1,6 +1,7 @@
 //! Writing a plan as source: the authors' own text, only what is reached, with linked names and bindings.
 
-use std::collections::{BTreeSet, HashMap, VecDeque};
+use rustc_hash::FxHashMap as HashMap;
+use std::collections::{BTreeSet, VecDeque};
 use std::fmt::Write as _;
 use std::ops::Range;
 
@@ -16,7 +17,7 @@ pub fn write_source(plan: &Plan) -> String {
         plan,
         wanted: BTreeSet::new(),
         queue: VecDeque::new(),
-        params: HashMap::new(),
+        params: HashMap::default(),
     };
     for (number, block) in plan.blocks.iter().enumerate() {
         for member in &block.members {
@@ -51,7 +52,7 @@ impl Writer<'_> {
                 self.want(global.home, name);
             }
         }
-        let mut items: HashMap<(usize, String), (ItemKind, String)> = HashMap::new();
+        let mut items: HashMap<(usize, String), (ItemKind, String)> = HashMap::default();
         while let Some((home, name)) = self.queue.pop_front() {
             if let Some(written) = self.item(home, &name) {
                 items.insert((home, name), written);
@@ -347,7 +348,7 @@ impl Writer<'_> {
         let text = &unit.file.text;
         let is_dead = |start: usize| function.is_some_and(|(_, dead)| dead.iter().any(|r| r.contains(&start)));
         let mut edits = Vec::new();
-        let mut params: HashMap<usize, (&str, Range<usize>)> = HashMap::new();
+        let mut params: HashMap<usize, (&str, Range<usize>)> = HashMap::default();
         for (name, range) in param_uses(text, &unit.scan) {
             params.insert(range.start, (name, range));
         }

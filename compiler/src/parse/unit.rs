@@ -1,6 +1,6 @@
 //! One text, parsed and checked alone.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -92,8 +92,8 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     let functions: HashMap<_, _> = ir.functions.iter().filter_map(|(h, f)| Some((f.name.clone()?, h))).collect();
     let structs = named_structs(&ir, &composed);
     let mut unit = Unit {
-        fixed_structs: HashSet::new(),
-        words: HashSet::new(),
+        fixed_structs: HashSet::default(),
+        words: HashSet::default(),
         results: Vec::new(),
         dependent: Vec::new(),
         file,
@@ -189,7 +189,7 @@ pub fn chain(error: &dyn std::error::Error) -> String {
 }
 
 fn words(unit: &Unit) -> HashSet<String> {
-    let mut words = HashSet::new();
+    let mut words = HashSet::default();
     for item in &unit.scan.items {
         words.extend(item.locals.iter().cloned());
         let text = &unit.file.text;
@@ -219,7 +219,7 @@ fn results(function: &naga::Function) -> Vec<(Handle<naga::Expression>, Range<us
 }
 
 fn named_structs(ir: &naga::Module, composed: &Composed) -> HashMap<Handle<naga::Type>, StructKey> {
-    let mut structs = HashMap::new();
+    let mut structs = HashMap::default();
     for (handle, ty) in ir.types.iter() {
         let (TypeInner::Struct { .. }, Some(name)) = (&ty.inner, &ty.name) else {
             continue;
@@ -242,7 +242,7 @@ fn named_structs(ir: &naga::Module, composed: &Composed) -> HashMap<Handle<naga:
 }
 
 fn fixed_structs(unit: &Unit) -> HashSet<StructKey> {
-    let mut fixed = HashSet::new();
+    let mut fixed = HashSet::default();
     let shared = unit
         .ir
         .global_variables

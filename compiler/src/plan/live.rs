@@ -3,7 +3,7 @@
 //! A store into a member that nobody reads is dead, and so is what only it needed; a vertex stage's outputs are alive
 //! where the fragment stage reads them. The analysis starts with no member alive and repeats until nothing is added.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::ops::Range;
 
 use naga::{Binding, Block, Expression, Handle, ShaderStage, Statement, Type, TypeInner};
@@ -51,14 +51,14 @@ fn drop_unneeded(plan: &mut Plan) {
 fn settle(plan: &mut Plan) {
     loop {
         let mut changed = false;
-        // Callers first: a function is looked at once something alive calls it.
+        // Callers first: callees precede them, so whatever a living call reaches is looked at in the same round.
         for index in (0..plan.functions.len()).rev() {
             if !plan.functions[index].needed {
                 continue;
             }
             if plan.functions[index].ir(&plan.homes).is_none() {
                 for target in plan.functions[index].targets.clone() {
-                    changed |= !std::mem::replace(&mut plan.functions[target].needed, true);
+                    plan.functions[target].needed = true;
                 }
             }
             let Some(function) = plan.functions[index].ir(&plan.homes) else {
@@ -71,7 +71,7 @@ fn settle(plan: &mut Plan) {
                 homes: &plan.homes,
                 functions: &plan.functions,
                 planned: &plan.functions[index],
-                pure_calls: HashMap::new(),
+                pure_calls: HashMap::default(),
                 called: Vec::new(),
                 function,
                 results: plan.functions[index].results(&plan.homes),
@@ -89,7 +89,7 @@ fn settle(plan: &mut Plan) {
             let (live, called) = (walker.live, walker.called);
             plan.functions[index].live = live;
             for callee in called {
-                changed |= !std::mem::replace(&mut plan.functions[callee].needed, true);
+                plan.functions[callee].needed = true;
             }
         }
         changed |= link_stages(plan);
@@ -101,7 +101,7 @@ fn settle(plan: &mut Plan) {
 
 /// Vertex outputs are alive where a fragment entry point of the plan reads their location.
 fn link_stages(plan: &mut Plan) -> bool {
-    let mut wanted = HashSet::new();
+    let mut wanted = HashSet::default();
     let mut outputs = Vec::new();
     let mut changed = false;
     for planned in &plan.functions {
@@ -146,7 +146,7 @@ fn bound_members(plan: &Plan, home: usize, ty: Handle<Type>) -> Vec<(usize, u32,
 
 /// WGSL has no empty structs: one that is used keeps a member, a built-in value rather than a location.
 fn keep_one_member(plan: &mut Plan) -> bool {
-    let mut used = HashSet::new();
+    let mut used = HashSet::default();
     for planned in plan.functions.iter().filter(|f| f.needed) {
         let unit = &plan.homes[planned.home].unit;
         let Some(function) = planned.ir(&plan.homes) else { continue };

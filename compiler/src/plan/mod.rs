@@ -12,7 +12,7 @@ mod reach;
 mod stores;
 mod structs;
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::sync::Arc;
 
 use naga::Handle;

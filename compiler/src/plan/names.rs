@@ -1,6 +1,6 @@
 //! Emitted names: interfaces' items keep theirs, modules' items get the instance's before them.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::{Body, Plan};
 
@@ -11,7 +11,7 @@ pub fn assign(plan: &mut Plan) {
     let interfaces = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_none());
     let instances = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_some());
     let order: Vec<usize> = interfaces.chain(instances).collect();
-    let mut functions: HashMap<(usize, String), usize> = HashMap::new();
+    let mut functions: HashMap<(usize, String), usize> = HashMap::default();
     for (index, planned) in plan.functions.iter().enumerate() {
         if !matches!(planned.body, Body::Combined { .. }) {
             functions.insert((planned.home, planned.source_name(&plan.homes).to_owned()), index);
@@ -68,7 +68,7 @@ struct Names {
 
 impl Names {
     fn new(plan: &Plan) -> Self {
-        let mut given = HashSet::new();
+        let mut given = HashSet::default();
         for group in super::GROUPS {
             given.insert(format!("{group}_params"));
             given.insert(joined(group, "Params"));
