@@ -1,5 +1,6 @@
 //! WGSL text to parsed units: each module alone, against stubs of what it calls.
 
+mod capabilities;
 mod checks;
 mod compose;
 pub mod lex;

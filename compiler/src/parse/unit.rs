@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
+use naga::valid::Capabilities;
 use naga::{Handle, TypeInner};
 
 use super::checks;
@@ -77,14 +78,18 @@ pub fn parse_unit(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: 
 /// The text is no WGSL, or has a type error.
 pub fn parse_whole(file: Arc<SourceFile>) -> Result<Unit, Report> {
     let scan = super::scan::scan(&file.text);
-    let composed = compose(&file, &scan, &Needs::default(), &|_| {
+    let needs = Needs {
+        capabilities: Capabilities::all(),
+        ..Needs::default()
+    };
+    let composed = compose(&file, &scan, &needs, &|_| {
         Err(Diagnostic::new(codes::UNKNOWN_INTERFACE, "none here").into())
     })?;
-    index(file, scan, composed, Needs::default(), None)
+    index(file, scan, composed, needs, None)
 }
 
 fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, interface: Option<String>) -> Result<Unit, Report> {
-    let (ir, info) = parse_and_validate(&file, &composed)?;
+    let (ir, info) = parse_and_validate(&file, &composed, &needs)?;
     let functions: HashMap<_, _> = ir.functions.iter().filter_map(|(h, f)| Some((f.name.clone()?, h))).collect();
     let structs = named_structs(&ir, &composed);
     let mut unit = Unit {
@@ -113,17 +118,41 @@ pub fn check_interface(unit: &Unit, interface: &Interface, interface_unit: &Unit
     checks::against_interface(unit, interface, interface_unit)
 }
 
-fn parse_and_validate(file: &Arc<SourceFile>, composed: &Composed) -> Result<(naga::Module, naga::valid::ModuleInfo), Report> {
+fn parse_and_validate(
+    file: &Arc<SourceFile>,
+    composed: &Composed,
+    needs: &Needs,
+) -> Result<(naga::Module, naga::valid::ModuleInfo), Report> {
     let work = || {
         let mut frontend = naga::front::wgsl::Frontend::new();
         let module = frontend.parse(&composed.text).map_err(|e| parse_error(file, composed, &e))?;
-        // Bindings are numbered when linking.
-        let flags = naga::valid::ValidationFlags::all() - naga::valid::ValidationFlags::BINDINGS;
-        let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::all());
-        let info = validator.validate(&module).map_err(|e| validation_error(file, composed, &e))?;
+        let place = |span| composed.locate(span);
+        super::capabilities::linkable(&module, file, &place)?;
+        let allowed = super::capabilities::CORE | needs.capabilities;
+        let info = validate(&module, allowed).or_else(|error| {
+            // An error of the text itself, whatever a device can do, comes first.
+            validate(&module, Capabilities::all()).map_err(|e| validation_error(file, composed, &e))?;
+            let missing = super::capabilities::missing(allowed, |set| validate(&module, set).is_ok());
+            let diagnostic = super::capabilities::undeclared(missing, needs.manifest.as_ref());
+            Err(Report::from(
+                error
+                    .spans()
+                    .fold(diagnostic, |d, (span, text)| label(d, file, composed, *span, text)),
+            ))
+        })?;
         Ok((module, info))
     };
     guarded(codes::UPSTREAM_PANIC, "parsing a module", work).map_err(|d| d.at(file, 0..0, "in this file"))?
+}
+
+/// Validates a unit alone; bindings are numbered when linking.
+#[allow(clippy::result_large_err, reason = "naga's own error, once a unit")]
+fn validate(
+    module: &naga::Module,
+    capabilities: Capabilities,
+) -> Result<naga::valid::ModuleInfo, naga::WithSpan<naga::valid::ValidationError>> {
+    let flags = naga::valid::ValidationFlags::all() - naga::valid::ValidationFlags::BINDINGS;
+    naga::valid::Validator::new(flags, capabilities).validate(module)
 }
 
 fn parse_error(file: &Arc<SourceFile>, composed: &Composed, error: &naga::front::wgsl::ParseError) -> Report {

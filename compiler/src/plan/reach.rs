@@ -7,8 +7,9 @@ use naga::{Block, Handle, Statement};
 
 use super::{Body, Choice, Home, Plan, Planned, Structs, bindings, choice, live, names, pure::is_pure, reachable};
 use crate::catalog::Catalog;
+use crate::contracts::compute_entry;
 use crate::diagnostics::{Diagnostic, Report, codes};
-use crate::manifest::Combine;
+use crate::manifest::{Combine, PassDecl};
 use crate::parse::{Origin, Unit};
 use crate::resolve::{Instances, Tree};
 
@@ -168,17 +169,23 @@ impl Reach<'_> {
             return Ok(());
         }
         let node = &self.tree.nodes[self.instances.list[home].node];
-        let diagnostic = match wanted {
-            None => Diagnostic::new(codes::NOT_A_ROOT, format!("`{}` has no entry points", node.module.name))
-                .at(&node.place.file, node.place.span(), "a pass is needed here")
-                .note("a subtree without entry points can be probed, not emitted"),
-            Some(entry) => Diagnostic::new(codes::BAD_DISPATCH, format!("`{}` has no entry point `{entry}`", node.module.name)).at(
-                &unit.file,
-                0..0,
-                "not in this file",
-            ),
-        };
-        Err(diagnostic.into())
+        if let Some(entry) = wanted {
+            let runs = |pass: &PassDecl| matches!(pass, PassDecl::Compute { entry: e, .. } if e == entry);
+            let pass = node
+                .module
+                .manifest
+                .passes
+                .iter()
+                .find(|(_, pass)| runs(pass))
+                .map_or("", |(name, _)| name);
+            return compute_entry(&node.module, &unit, pass, entry);
+        }
+        Err(
+            Diagnostic::new(codes::NOT_A_ROOT, format!("`{}` has no entry points", node.module.name))
+                .at(&node.place.file, node.place.name_span(), "a pass is needed here")
+                .note("a subtree without entry points can be probed, not emitted")
+                .into(),
+        )
     }
 
     fn visit(&mut self, target: Target) -> Result<usize, Report> {
