@@ -14,7 +14,7 @@ use crate::manifest::{
     CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, check_category, check_module, parse_category, parse_module, typed,
 };
 use crate::parse::scan::{Item, ItemKind, scan};
-use crate::parse::{Interface, Needs, SlotNeed, Unit, check_interface, compose, parse_unit};
+use crate::parse::{Interface, Needs, SlotNeed, Unit, brackets, check_interface, compose, parse_unit};
 use crate::resolve::Place;
 
 /// A category with its name.
@@ -262,6 +262,7 @@ impl Catalog {
         };
         limits::check_wgsl(&file)?;
         let scan = scan(&file.text);
+        brackets(&file, &scan)?;
         Ok(Interface {
             category: Arc::clone(category),
             file,
@@ -327,9 +328,10 @@ impl Catalog {
     ) -> Result<Unit, Report> {
         limits::check_wgsl(&file)?;
         let scan = scan(&file.text);
+        brackets(&file, &scan)?;
         let needs = needs(module, constants)?;
         let composed = compose(&file, &scan, &needs, &|n| self.interface(n))?;
-        let unit = parse_unit(file, scan, composed, needs, None)?;
+        let unit = parse_unit(file, scan, composed, needs, None).map_err(|report| self.blame(report))?;
         if !module.category.is_empty() {
             check_interface(
                 &unit,
@@ -338,6 +340,19 @@ impl Catalog {
             )?;
         }
         Ok(unit)
+    }
+
+    /// Of an error in an interface's text that showed in a module, the one that the interface has by itself.
+    fn blame(&self, report: Report) -> Report {
+        let file = report
+            .diagnostics
+            .first()
+            .and_then(|d| d.labels.first())
+            .map(|l| l.file.name.as_str());
+        let category = file
+            .and_then(|name| name.strip_suffix("/interface.wgsl"))
+            .filter(|c| self.categories.contains_key(*c));
+        category.and_then(|category| self.interface_unit(category).err()).unwrap_or(report)
     }
 
     /// The functions that a category's modules define, with comment, signature and neutral body as the interface has them;

@@ -6,11 +6,10 @@ use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::link::{link, write_source};
 use crate::manifest::{Node, PassDecl, parse_recipe};
-use crate::parse::chain;
 use crate::plan::{Plan, Roots, plan};
 use crate::reflect::{Reflection, reflect};
 use crate::resolve::{Instances, Place, Tree, resolve, resolve_root};
-use crate::validate::{Validated, validate};
+use crate::validate::{Validated, located, validate};
 use crate::why;
 
 pub use crate::why::Why;
@@ -158,6 +157,7 @@ impl Catalog {
                     known.extend(passes.keys().map(|p| format!("{}.{p}", instance.name)));
                 }
                 let diagnostic = Diagnostic::new(codes::UNKNOWN_PASS_OF_RECIPE, format!("the recipe has no pass `{pass}`"));
+                let diagnostic = diagnostic.at(&recipe.source, Place::new(&recipe.source).name_span(), "in the tree of this root");
                 Err(diagnostic.suggest(pass, "passes", known.iter().map(String::as_str)).into())
             }
         }
@@ -167,7 +167,11 @@ impl Catalog {
         let plan = plan(self, tree, instances, roots)?;
         let module = link(&plan);
         let hash = crate::hash::structural_hash(&module);
-        let validated = validate(module).map_err(|error| located(&plan, &error))?;
+        let validated = match validate(module) {
+            Ok(validated) => validated,
+            // The module is gone with the error: writing it again is for failures only.
+            Err(error) => return Err(located(&plan, &link(&plan), &error)),
+        };
         let reflection = reflect(self, &plan, &validated, hash, pass);
         Ok(Program {
             validated,
@@ -177,22 +181,4 @@ impl Catalog {
             wgsl: OnceLock::new(),
         })
     }
-}
-
-/// naga's error about a linked module, in the authors' files.
-fn located(plan: &Plan, error: &naga::WithSpan<naga::valid::ValidationError>) -> Report {
-    let mut diagnostic = Diagnostic::new(codes::LINKED_INVALID, chain(error.as_inner()));
-    for (span, text) in error.spans() {
-        let Some(range) = span.to_range() else { continue };
-        let home = plan.homes.iter().rev().find(|h| h.base as usize <= range.start);
-        if let Some(home) = home {
-            let base = home.base as usize;
-            if let Some((file, place)) = home.unit.composed.locate(range.start - base..range.end.saturating_sub(base)) {
-                diagnostic = diagnostic.at(file, place, text.as_str());
-            }
-        }
-    }
-    diagnostic
-        .note("the modules are valid each by itself, but not linked together")
-        .into()
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use naga::valid::Capabilities;
-use naga::{ShaderStage, TypeInner};
+use naga::{Handle, ShaderStage, TypeInner};
 
 use crate::diagnostics::{Diagnostic, SourceFile, codes};
 use crate::manifest::{Locator, Step};
@@ -29,13 +29,7 @@ pub fn linkable(module: &naga::Module, file: &Arc<SourceFile>, locate: &Locate) 
             TypeInner::CooperativeMatrix { .. } => "a cooperative matrix",
             _ => continue,
         };
-        // The type's own place is where it is first written; a global's says more where it has none.
-        let user = module
-            .global_variables
-            .iter()
-            .find(|(_, g)| g.ty == handle)
-            .map(|(h, _)| module.global_variables.get_span(h));
-        found.get_or_insert((what, user.unwrap_or_else(|| module.types.get_span(handle))));
+        found.get_or_insert((what, place_of(module, handle)));
     }
     for entry in &module.entry_points {
         if !matches!(entry.stage, ShaderStage::Vertex | ShaderStage::Fragment | ShaderStage::Compute) {
@@ -48,6 +42,19 @@ pub fn linkable(module: &naga::Module, file: &Arc<SourceFile>, locate: &Locate) 
     Err(Diagnostic::new(codes::NOT_LINKABLE, format!("{what} cannot be linked"))
         .at(file, span, "used here")
         .note("modules may use vertex, fragment and compute stages without ray tracing and cooperative matrices"))
+}
+
+/// Where a type without a place of its own is first used: by a variable of the module or of a function.
+fn place_of(module: &naga::Module, ty: Handle<naga::Type>) -> naga::Span {
+    let globals = module.global_variables.iter().filter(|(_, g)| g.ty == ty);
+    let mut places = globals.map(|(handle, _)| module.global_variables.get_span(handle));
+    let locals = |f: &naga::Function| {
+        let found = f.local_variables.iter().find(|(_, l)| l.ty == ty);
+        found.map(|(handle, _)| f.local_variables.get_span(handle))
+    };
+    let entries = || module.entry_points.iter().find_map(|e| locals(&e.function));
+    let local = || module.functions.iter().find_map(|(_, f)| locals(f)).or_else(entries);
+    places.next().or_else(local).unwrap_or_else(|| module.types.get_span(ty))
 }
 
 /// Capabilities beyond the allowed ones without which a module does not pass.

@@ -261,9 +261,13 @@ impl Composer<'_> {
     /// Two things from elsewhere that this text would call by one name.
     fn clash(&self, name: &str, first: &Origin, second: &Origin) -> Report {
         let mut diagnostic = Diagnostic::new(codes::DUPLICATE_SYMBOL, format!("`{name}` would mean two things in this module"));
-        if let (Some(manifest), Origin::Slot { slot, .. }) = (&self.needs.manifest, second) {
-            let place = Locator::new(&manifest.text).find_key(&[Step::Key("slots"), Step::Key(slot)]);
-            diagnostic = diagnostic.at(manifest, place.unwrap_or_default(), format!("this slot brings a `{name}`"));
+        if let Some(manifest) = &self.needs.manifest {
+            let places = Locator::new(&manifest.text);
+            let place = match second {
+                Origin::Slot { slot, .. } => places.find_key(&[Step::Key("slots"), Step::Key(slot)]),
+                _ => places.find(&[Step::Key("uses")]),
+            };
+            diagnostic = diagnostic.at(manifest, place.unwrap_or_default(), format!("this brings in a second `{name}`"));
         }
         for origin in [second, first] {
             if let Some((file, span)) = self.declaration(name, origin) {
@@ -273,9 +277,11 @@ impl Composer<'_> {
         if diagnostic.labels.is_empty() {
             diagnostic = diagnostic.at(self.author, 0..0, "in what this file is given");
         }
-        diagnostic
-            .note("give one of the slots a `prefix` in module.ron, or use one of the interfaces only")
-            .into()
+        let advice = match (first, second) {
+            (Origin::Slot { .. }, _) | (_, Origin::Slot { .. }) => "give one of the slots a `prefix` in module.ron",
+            _ => "use one of the two interfaces only",
+        };
+        diagnostic.note(advice).into()
     }
 
     /// Where an interface declares what a name stands for.

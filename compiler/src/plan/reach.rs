@@ -11,7 +11,7 @@ use crate::contracts::compute_entry;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::{Combine, PassDecl};
 use crate::parse::{Origin, Unit};
-use crate::resolve::{Instances, Tree};
+use crate::resolve::{Instances, Place, Tree};
 
 /// Which entry points a plan starts from.
 #[derive(Clone, Debug)]
@@ -305,9 +305,19 @@ impl Reach<'_> {
             codes::NOT_COMBINABLE,
             format!("`{interface}` does not say how results of `{function}` combine in the slot `{slot}`"),
         );
-        if let Some(node) = self.node(home) {
-            let place = &self.tree.nodes[node].place;
-            diagnostic = diagnostic.at(&place.file, place.span(), "several modules stand in that slot here");
+        let second = self
+            .node(home)
+            .and_then(|n| self.tree.nodes[n].fills.get(slot)?.nodes.get(1).copied());
+        if let Some(second) = second {
+            let place = &self.tree.nodes[second].place;
+            diagnostic = diagnostic.at(&place.file, place.name_span(), "a second module stands in that slot here");
+        }
+        if let Some(category) = category {
+            diagnostic = diagnostic.at(
+                &category.source,
+                Place::new(&category.source).keys(&["combine"]).span(),
+                "no rule for it here",
+            );
         }
         Err(diagnostic
             .note("`combine` in the interface's category.ron names the rule: Sum, Product or Chain")
@@ -343,7 +353,7 @@ impl Reach<'_> {
         let unit = Arc::clone(&self.homes[owner].unit);
         let found = unit.functions.get(function).copied();
         match (unit.origin(function), found) {
-            (Some(Origin::Own | Origin::Slot { .. } | Origin::Offered { .. } | Origin::Interface(_)), Some(handle)) => {
+            (Some(Origin::Own | Origin::Slot { .. } | Origin::Offered { .. }), Some(handle)) => {
                 self.same_signature(home, owner, function, handle)?;
                 self.call(owner, handle)
             }
