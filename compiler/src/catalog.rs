@@ -4,7 +4,9 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use indexmap::IndexMap;
+use naga::valid::Capabilities;
 
+use crate::contracts;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::library::Library;
 use crate::limits;
@@ -12,7 +14,7 @@ use crate::manifest::{
     CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, check_category, check_module, parse_category, parse_module, typed,
 };
 use crate::parse::scan::{Item, ItemKind, scan};
-use crate::parse::{Interface, Needs, SlotNeed, Unit, check_interface, compose, parse_unit};
+use crate::parse::{Interface, Needs, SlotNeed, Unit, brackets, check_interface, compose, parse_unit};
 use crate::resolve::Place;
 
 /// A category with its name.
@@ -66,7 +68,7 @@ impl std::fmt::Debug for Catalog {
 impl Catalog {
     /// Reads all manifests of the library. WGSL is read and parsed when a recipe first needs it.
     ///
-    /// A folder of the root is a category if it has a `category.ron`; other folders are none of ours.
+    /// A folder of the root is a category if it has a `category.ron`. Other folders are none of ours, unless modules stand in them.
     ///
     /// # Errors
     /// A manifest is no RON, or says something that cannot be.
@@ -76,7 +78,10 @@ impl Catalog {
         let mut found = Vec::new();
         for name in sorted(library.folders("")) {
             let path = format!("{name}/category.ron");
-            let Some(text) = read(library.as_ref(), &path)? else { continue };
+            let Some(text) = read(library.as_ref(), &path)? else {
+                found.extend(stray_module(library.as_ref(), &name)?);
+                continue;
+            };
             match parse_category(&path, &text) {
                 Ok(parsed) => {
                     if let Err(report) = check_category(&parsed) {
@@ -104,6 +109,7 @@ impl Catalog {
             interface_units: Mutex::default(),
             units: Mutex::default(),
         };
+        Report::unless_empty(contracts::unknown_interfaces(&catalog))?;
         Ok(catalog)
     }
 
@@ -218,6 +224,26 @@ impl Catalog {
         if let Some(done) = lock(&self.interfaces).get(name) {
             return Ok(Arc::clone(done));
         }
+        let interface = Arc::new(self.read_interface(name)?);
+        // What it offers may be declared by what it uses; those are looked at themselves when they are asked for.
+        let mut known = vec![name.to_owned()];
+        let mut used = Vec::new();
+        let mut queue = interface.category.manifest.uses.clone();
+        while interface.category.manifest.offers.iter().any(|f| interface.scan.item(f).is_none()) {
+            let Some(next) = queue.pop() else { break };
+            if !known.contains(&next) {
+                let other = self.read_interface(&next)?;
+                queue.extend(other.category.manifest.uses.iter().cloned());
+                used.push(other);
+                known.push(next);
+            }
+        }
+        contracts::named_functions(&interface, &used)?;
+        lock(&self.interfaces).insert(name.to_owned(), Arc::clone(&interface));
+        Ok(interface)
+    }
+
+    fn read_interface(&self, name: &str) -> Result<Interface, Report> {
         let Some(category) = self.categories.get(name) else {
             let known = self.categories.keys().map(String::as_str);
             let diagnostic = Diagnostic::new(codes::UNKNOWN_INTERFACE, format!("there is no category `{name}`"));
@@ -236,13 +262,12 @@ impl Catalog {
         };
         limits::check_wgsl(&file)?;
         let scan = scan(&file.text);
-        let interface = Arc::new(Interface {
+        brackets(&file, &scan)?;
+        Ok(Interface {
             category: Arc::clone(category),
             file,
             scan,
-        });
-        lock(&self.interfaces).insert(name.to_owned(), Arc::clone(&interface));
-        Ok(interface)
+        })
     }
 
     /// A category's interface, parsed with its neutral bodies.
@@ -263,6 +288,7 @@ impl Catalog {
             needs,
             Some(name.to_owned()),
         )?;
+        contracts::interface_unit(&interface.category, &unit)?;
         let unit = Arc::new(unit);
         lock(&self.interface_units).insert(name.to_owned(), Arc::clone(&unit));
         Ok(unit)
@@ -302,9 +328,10 @@ impl Catalog {
     ) -> Result<Unit, Report> {
         limits::check_wgsl(&file)?;
         let scan = scan(&file.text);
+        brackets(&file, &scan)?;
         let needs = needs(module, constants)?;
         let composed = compose(&file, &scan, &needs, &|n| self.interface(n))?;
-        let unit = parse_unit(file, scan, composed, needs, None)?;
+        let unit = parse_unit(file, scan, composed, needs, None).map_err(|report| self.blame(report))?;
         if !module.category.is_empty() {
             check_interface(
                 &unit,
@@ -313,6 +340,19 @@ impl Catalog {
             )?;
         }
         Ok(unit)
+    }
+
+    /// Of an error in an interface's text that showed in a module, the one that the interface has by itself.
+    fn blame(&self, report: Report) -> Report {
+        let file = report
+            .diagnostics
+            .first()
+            .and_then(|d| d.labels.first())
+            .map(|l| l.file.name.as_str());
+        let category = file
+            .and_then(|name| name.strip_suffix("/interface.wgsl"))
+            .filter(|c| self.categories.contains_key(*c));
+        category.and_then(|category| self.interface_unit(category).err()).unwrap_or(report)
     }
 
     /// The functions that a category's modules define, with comment, signature and neutral body as the interface has them;
@@ -343,7 +383,8 @@ impl Catalog {
             constants.insert(name.clone(), (param.default.clone(), default_of(module, name, param)?));
         }
         let unit = self.unit(module, &constants)?;
-        crate::resolve::check_resources(module, &unit)
+        crate::resolve::check_resources(module, &unit)?;
+        contracts::module_references(self, module, &unit)
     }
 }
 
@@ -362,6 +403,13 @@ fn needs(module: &Module, constants: &IndexMap<String, (Value, Typed)>) -> Resul
             .collect(),
         uses: manifest.uses.clone(),
         instances: manifest.instances.clone(),
+        manifest: Some(Arc::clone(&module.source)).filter(|_| !module.category.is_empty()),
+        // Names are known to be capabilities since the manifest was checked.
+        capabilities: manifest
+            .capabilities
+            .iter()
+            .filter_map(|name| Capabilities::from_name(name))
+            .collect(),
         ..Needs::default()
     };
     for (name, param) in &manifest.params {
@@ -421,6 +469,19 @@ fn load_modules(library: &dyn Library, category: &str, found: &mut Vec<Diagnosti
         }
     }
     Ok(modules)
+}
+
+/// The error about a folder that holds a module but is no category.
+fn stray_module(library: &dyn Library, folder: &str) -> Result<Option<Diagnostic>, Report> {
+    for name in sorted(library.folders(folder)) {
+        if read(library, &format!("{folder}/{name}/module.ron"))?.is_some() {
+            let message = format!("the folder `{folder}` holds the module `{name}`, but has no `category.ron`");
+            return Ok(Some(Diagnostic::new(codes::MISSING_CATEGORY, message).note(
+                "a folder with modules is a category: declare it, or move the module into one that is",
+            )));
+        }
+    }
+    Ok(None)
 }
 
 fn sorted(mut names: Vec<String>) -> Vec<String> {

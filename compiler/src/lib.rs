@@ -62,6 +62,7 @@
 
 pub mod canonical;
 pub mod catalog;
+mod contracts;
 pub mod diagnostics;
 pub mod emit;
 pub mod hash;

@@ -7,11 +7,10 @@ use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::hash::structural_hash;
 use crate::link::{link, write_source};
 use crate::manifest::{Node, PassDecl, parse_recipe};
-use crate::parse::chain;
 use crate::plan::{Plan, Roots, plan};
 use crate::reflect::{Reflection, reflect};
 use crate::resolve::{Instances, Place, Tree, resolve, resolve_root};
-use crate::validate::{Validated, validate};
+use crate::validate::{Validated, located, validate};
 use crate::why;
 
 pub use crate::why::Why;
@@ -167,6 +166,7 @@ impl Catalog {
                     known.extend(passes.keys().map(|p| format!("{}.{p}", instance.name)));
                 }
                 let diagnostic = Diagnostic::new(codes::UNKNOWN_PASS_OF_RECIPE, format!("the recipe has no pass `{pass}`"));
+                let diagnostic = diagnostic.at(&recipe.source, Place::new(&recipe.source).name_span(), "in the tree of this root");
                 Err(diagnostic.suggest(pass, "passes", known.iter().map(String::as_str)).into())
             }
         }
@@ -185,10 +185,14 @@ impl Catalog {
     /// # Errors
     /// The linked module does not pass naga's validator.
     pub fn finish(&self, plan: LinkPlan) -> Result<Program, Report> {
-        let module = plan.link();
-        let hash = structural_hash(&module);
         let LinkPlan { plan, pass } = plan;
-        let validated = validate(module).map_err(|error| located(&plan, &error))?;
+        let module = link(&plan);
+        let hash = structural_hash(&module);
+        let validated = match validate(module) {
+            Ok(validated) => validated,
+            // The module is gone with the error: writing it again is for failures only.
+            Err(error) => return Err(located(&plan, &link(&plan), &error)),
+        };
         let reflection = reflect(self, &plan, &validated, hash, &pass);
         Ok(Program {
             validated,
@@ -217,22 +221,4 @@ impl LinkPlan {
     pub fn source(&self) -> String {
         write_source(&self.plan)
     }
-}
-
-/// naga's error about a linked module, in the authors' files.
-fn located(plan: &Plan, error: &naga::WithSpan<naga::valid::ValidationError>) -> Report {
-    let mut diagnostic = Diagnostic::new(codes::LINKED_INVALID, chain(error.as_inner()));
-    for (span, text) in error.spans() {
-        let Some(range) = span.to_range() else { continue };
-        let home = plan.homes.iter().rev().find(|h| h.base as usize <= range.start);
-        if let Some(home) = home {
-            let base = home.base as usize;
-            if let Some((file, place)) = home.unit.composed.locate(range.start - base..range.end.saturating_sub(base)) {
-                diagnostic = diagnostic.at(file, place, text.as_str());
-            }
-        }
-    }
-    diagnostic
-        .note("the modules are valid each by itself, but not linked together")
-        .into()
 }

@@ -68,7 +68,7 @@ codes! {
     ENTRY_POINT_IO = "SW0411", "An entry point takes or gives locations outside a struct.";
     MISSING_WGSL = "SW0412", "A module's or interface's WGSL file is not there.";
     RESERVED_NAME = "SW0413", "A module declares a name that the linker generates.";
-    STRUCT_MISMATCH = "SW0414", "Two structs of one name have different members.";
+    NOT_LINKABLE = "SW0415", "A module uses ray tracing, cooperative matrices or mesh stages, which the linker does not take.";
 
     LINKED_INVALID = "SW0501", "The linked module does not pass validation.";
     CAPABILITY_UNDECLARED = "SW0502", "A module uses a capability that its manifest does not declare.";

@@ -71,6 +71,9 @@ pub struct Label {
     pub text: String,
 }
 
+/// Most names that are listed beside the nearest one.
+const LONGEST_LIST: usize = 32;
+
 /// One error with its stable code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -113,15 +116,18 @@ impl Diagnostic {
         self
     }
 
-    /// Advises the known name that is nearest to `found` if one is near, and lists all of them.
+    /// Advises the known name that is nearest to `found` if one is near, and lists all of them, unless there are so many that
+    /// the nearest one would drown.
     #[must_use]
     pub fn suggest<'a>(mut self, found: &str, what: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
         let known: Vec<&str> = known.into_iter().collect();
-        if let Some(near) = nearest(found, known.iter().copied()) {
+        let near = nearest(found, known.iter().copied());
+        if let Some(near) = near {
             self.notes.push(format!("did you mean `{near}`?"));
         }
-        if !known.is_empty() {
-            self.notes.push(format!("{what}: {}", known.join(", ")));
+        if near.is_none() || known.len() <= LONGEST_LIST {
+            let list = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+            self.notes.push(format!("{what}: {list}"));
         }
         self
     }

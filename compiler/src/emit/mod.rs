@@ -14,6 +14,7 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ResourceBinding, ShaderStage};
 
 use crate::diagnostics::{Diagnostic, Report, codes};
+use crate::parse::{missing, readable};
 use crate::upstream::guarded;
 use crate::validate::{Validated, validate};
 
@@ -105,10 +106,17 @@ fn choose<'a>(module: &'a Module, target: Target, name: Option<&str>) -> Result<
 
 /// Whether the target can express what the module needs.
 fn supported(module: &Module, target: Target) -> Result<(), Diagnostic> {
-    let verdict = Validator::new(ValidationFlags::all(), target.capabilities()).validate(module);
-    verdict
-        .map(|_| ())
-        .map_err(|error| unsupported(target, &causes(&error.into_inner())))
+    let verdict = |capabilities| Validator::new(ValidationFlags::all(), capabilities).validate(module);
+    let Err(error) = verdict(target.capabilities()) else {
+        return Ok(());
+    };
+    let missing = missing(target.capabilities(), |set| verdict(set).is_ok());
+    let names: Vec<String> = missing.iter_names().map(|(name, _)| format!("`{name}`")).collect();
+    let mut diagnostic = unsupported(target, &readable(&causes(&error.into_inner()), module));
+    if !names.is_empty() {
+        diagnostic = diagnostic.note(format!("it lacks {}: leave out the modules that declare this", names.join(", ")));
+    }
+    Err(diagnostic)
 }
 
 fn unsupported(target: Target, reason: &str) -> Diagnostic {
@@ -117,6 +125,17 @@ fn unsupported(target: Target, reason: &str) -> Diagnostic {
         format!("{} cannot express this shader", target.name()),
     )
     .note(reason)
+}
+
+/// What a language says of a number type that it does not have.
+fn no_scalar(scalar: naga::Scalar) -> String {
+    let kind = match scalar.kind {
+        naga::ScalarKind::Sint => "signed integer",
+        naga::ScalarKind::Uint => "unsigned integer",
+        naga::ScalarKind::Float => "floating-point",
+        _ => "other",
+    };
+    format!("it has no {kind} numbers of {} bits", 8 * u32::from(scalar.width))
 }
 
 fn failed(target: Target, error: &dyn Error) -> Diagnostic {
@@ -210,9 +229,8 @@ fn write_glsl(
         multiview: None,
     };
     let explain = |error: glsl::Error| match error {
-        glsl::Error::MissingFeatures(_) | glsl::Error::ImageMultipleSamplers | glsl::Error::UnsupportedScalar(_) => {
-            unsupported(Target::Glsl, &error.to_string())
-        }
+        glsl::Error::UnsupportedScalar(scalar) => unsupported(Target::Glsl, &no_scalar(scalar)),
+        glsl::Error::MissingFeatures(_) | glsl::Error::ImageMultipleSamplers => unsupported(Target::Glsl, &error.to_string()),
         _ => failed(Target::Glsl, &error),
     };
     let mut text = String::new();
@@ -232,9 +250,8 @@ fn write_hlsl(module: &Module, info: &ModuleInfo) -> Result<Vec<u8>, Diagnostic>
     let pipeline = hlsl::PipelineOptions::default();
     let written = hlsl::Writer::new(&mut text, &options, &pipeline).write(module, info, None);
     let names = written.map_err(|error| match error {
-        hlsl::Error::ShaderModelTooLow(..) | hlsl::Error::UnsupportedScalar(_) | hlsl::Error::Unimplemented(_) => {
-            unsupported(Target::Hlsl, &error.to_string())
-        }
+        hlsl::Error::UnsupportedScalar(scalar) => unsupported(Target::Hlsl, &no_scalar(scalar)),
+        hlsl::Error::ShaderModelTooLow(..) | hlsl::Error::Unimplemented(_) => unsupported(Target::Hlsl, &error.to_string()),
         _ => failed(Target::Hlsl, &error),
     })?;
     for name in names.entry_point_names {

@@ -143,7 +143,8 @@ fn missing_capability() {
     let double = "@compute @workgroup_size(1) fn main() { var x = 1.0lf; x += 1.0lf; }";
     let expected = "\
 error[SW0601]: MSL cannot express this shader
- = Type [0] '' is invalid: Using `f64` values requires the `naga::valid::Capabilities::FLOAT64` flag
+ = Type is invalid: Using `f64` values requires the `naga::valid::Capabilities::FLOAT64` flag
+ = it lacks `FLOAT64`: leave out the modules that declare this
 ";
     assert_eq!(error(double, Target::Msl, None), expected);
     let half = "enable f16; @compute @workgroup_size(1) fn main() { var x = 1.0h; x += 1.0h; }";

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use naga::{Handle, TypeInner};
 
-use super::compose::{Interface, Origin};
+use super::compose::{Composed, Interface, Needs, Origin, param_uses};
+use super::lex::Kind;
 use super::scan::{Item, ItemKind, Scan};
 use super::unit::Unit;
-use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
+use crate::diagnostics::{Diagnostic, Report, SourceFile, codes, nearest};
 
 /// What can be said of the text before naga sees it.
 pub fn before_parsing(file: &Arc<SourceFile>, scan: &Scan, interface: bool) -> Result<(), Report> {
@@ -25,6 +26,58 @@ pub fn before_parsing(file: &Arc<SourceFile>, scan: &Scan, interface: bool) -> R
         if item.kind == ItemKind::Variable {
             explicit_binding(file, scan, item)?;
         }
+    }
+    Ok(())
+}
+
+/// Every bracket that the text opens it also closes: else the parser would read on into what the linker adds.
+pub fn brackets(file: &Arc<SourceFile>, scan: &Scan) -> Result<(), Report> {
+    let mut open = Vec::new();
+    for token in &scan.tokens {
+        match token.kind {
+            Kind::Mark(mark @ (b'{' | b'(' | b'[')) => open.push((mark, token.range())),
+            Kind::Mark(mark @ (b'}' | b')' | b']')) => {
+                let partner = match mark {
+                    b'}' => b'{',
+                    b')' => b'(',
+                    _ => b'[',
+                };
+                // Of brackets that do not fit together the parser tells more.
+                if open.pop().is_none_or(|(found, _)| found != partner) {
+                    return Ok(());
+                }
+            }
+            _ => {}
+        }
+    }
+    let Some((_, first)) = open.into_iter().next() else { return Ok(()) };
+    let end = file.text.trim_end().len();
+    Err(Diagnostic::new(codes::WGSL_SYNTAX, "a bracket is never closed")
+        .at(file, first, "opened here")
+        .at(file, end..end, "the file ends here")
+        .into())
+}
+
+/// What is read of `params` is declared.
+pub fn known_params(file: &Arc<SourceFile>, scan: &Scan, composed: &Composed, needs: &Needs) -> Result<(), Report> {
+    let Some(manifest) = needs
+        .manifest
+        .as_ref()
+        .filter(|_| composed.names.get("params") != Some(&Origin::Own))
+    else {
+        return Ok(());
+    };
+    for (name, span) in param_uses(&file.text, scan) {
+        if needs.uniforms.contains_key(name) || needs.overrides.contains_key(name) || needs.constants.contains_key(name) {
+            continue;
+        }
+        let known = needs.uniforms.keys().chain(needs.overrides.keys()).chain(needs.constants.keys());
+        return Err(
+            Diagnostic::new(codes::UNKNOWN_PARAM, format!("the module has no parameter `{name}`"))
+                .at(file, span, format!("not under `params` of `{}`", manifest.name))
+                .suggest(name, "parameters", known.map(String::as_str))
+                .into(),
+        );
     }
     Ok(())
 }
@@ -93,12 +146,21 @@ fn locations_in_structs(unit: &Unit, entry: &naga::EntryPoint) -> Result<(), Rep
         return Ok(());
     }
     let item = unit.scan.item(&entry.name);
-    let span = item.map_or(0..0, |i| i.name_span.clone());
+    let located = |i: &Item| {
+        let inputs = i.fields.iter().map(|field| &field.tokens);
+        let has = |tokens: &&Range<usize>| {
+            unit.scan.tokens[(*tokens).clone()]
+                .iter()
+                .any(|t| &unit.file.text[t.range()] == "location")
+        };
+        inputs.chain([&i.result]).find(has).map(|tokens| unit.scan.bytes(tokens))
+    };
+    let span = item.map_or(0..0, |i| located(i).unwrap_or_else(|| i.name_span.clone()));
     Err(Diagnostic::new(
         codes::ENTRY_POINT_IO,
         format!("the entry point `{}` has a @location outside a struct", entry.name),
     )
-    .at(&unit.file, span, "in the parameters or the result of this function")
+    .at(&unit.file, span, "this could not be left out")
     .note("put inputs and outputs with @location into a struct, so that those nobody reads can be left out")
     .into())
 }
@@ -134,7 +196,7 @@ pub fn require(
         if !must {
             return Ok(());
         }
-        return Err(Diagnostic::new(
+        let mut diagnostic = Diagnostic::new(
             codes::MISSING_FUNCTION,
             format!(
                 "the module does not define `{}` of the interface `{}`",
@@ -142,8 +204,22 @@ pub fn require(
             ),
         )
         .at(&unit.file, 0..0, "in this file")
-        .at(&interface.file, header(interface, item), "declared here")
-        .into());
+        .at(&interface.file, header(interface, item), "declared here");
+        let own = unit
+            .scan
+            .items
+            .iter()
+            .filter(|i| i.kind == ItemKind::Function)
+            .map(|i| i.name.as_str());
+        if let Some(near) = nearest(&item.name, own) {
+            diagnostic = diagnostic.note(format!("`{near}` has nearly this name"));
+        }
+        return Err(diagnostic
+            .note(format!(
+                "add `{} {{ ... }}`",
+                one_line(&interface.file.text[header(interface, item)])
+            ))
+            .into());
     };
     if equal_signatures(unit, &unit.ir.functions[*found], declared, &declared.ir.functions[expected]) {
         return Ok(());
@@ -206,7 +282,7 @@ pub fn same_signature(
 }
 
 /// Where the header of a function's text ends.
-fn header_end(text: &str, span: &Range<usize>) -> usize {
+pub fn header_end(text: &str, span: &Range<usize>) -> usize {
     text.get(span.clone())
         .and_then(|t| t.find('{'))
         .map_or(span.end, |brace| span.start + text[span.start..span.start + brace].trim_end().len())

@@ -9,13 +9,14 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use indexmap::{IndexMap, IndexSet};
+use naga::valid::Capabilities;
 
 use super::lex::Kind;
 use super::scan::{ItemKind, Scan};
 use crate::catalog::Category;
 use crate::diagnostics::codes;
 use crate::diagnostics::{Diagnostic, Report, SourceFile};
-use crate::manifest::{Param, ParamType, Typed};
+use crate::manifest::{Locator, Param, ParamType, Step, Typed};
 
 /// A category's interface, scanned.
 #[derive(Debug)]
@@ -85,6 +86,10 @@ pub struct Needs {
     pub constants: IndexMap<String, Typed>,
     /// Fields of `instances[i]`.
     pub instances: IndexMap<String, Param>,
+    /// `module.ron`, where there is one.
+    pub manifest: Option<Arc<SourceFile>>,
+    /// What the text may ask of a device.
+    pub capabilities: Capabilities,
 }
 
 /// A stretch of composed text that was copied from a file.
@@ -166,6 +171,7 @@ struct Composer<'a> {
     out: Composed,
     author: &'a Arc<SourceFile>,
     scan: &'a Scan,
+    needs: &'a Needs,
     interfaces: &'a dyn Fn(&str) -> Result<Arc<Interface>, Report>,
 }
 
@@ -196,6 +202,7 @@ pub fn compose(
         out,
         author,
         scan,
+        needs,
         interfaces,
     };
     composer.own_names()?;
@@ -222,23 +229,75 @@ impl Composer<'_> {
 
     fn claim(&mut self, name: &str, origin: Origin, what: &str) -> Result<(), Report> {
         if let Some(item) = self.scan.item(name) {
-            return Err(
-                Diagnostic::new(codes::DUPLICATE_SYMBOL, format!("`{name}` is declared here and is also {what}"))
-                    .at(self.author, item.name_span.clone(), "declared here")
-                    .note("give the module's own item another name, or the slot a `prefix`")
-                    .into(),
-            );
+            let generated = matches!(origin, Origin::Params | Origin::Param(_) | Origin::Instances);
+            let (code, advice) = match origin {
+                _ if generated => (codes::RESERVED_NAME, "give it another name"),
+                Origin::Slot { .. } => (
+                    codes::DUPLICATE_SYMBOL,
+                    "give it another name, or the slot a `prefix` in module.ron",
+                ),
+                _ => (
+                    codes::DUPLICATE_SYMBOL,
+                    "give it another name; what an interface declares is there without being declared again",
+                ),
+            };
+            let message = if generated {
+                format!("`{name}` is a name that the linker gives to {what}")
+            } else {
+                format!("`{name}` is declared here and is also {what}")
+            };
+            let mut diagnostic = Diagnostic::new(code, message).at(self.author, item.name_span.clone(), "declared here");
+            if let Some((file, span)) = self.declaration(name, &origin) {
+                diagnostic = diagnostic.at(&file, span, "and here");
+            }
+            return Err(diagnostic.note(advice).into());
         }
         match self.out.names.insert(name.to_owned(), origin.clone()) {
-            Some(other) if other != origin => Err(Diagnostic::new(
-                codes::DUPLICATE_SYMBOL,
-                format!("`{name}` is {what} and something else too"),
-            )
-            .at(self.author, 0..0, "in what this module calls")
-            .note("give one of the slots a `prefix` in module.ron")
-            .into()),
+            Some(other) if other != origin => Err(self.clash(name, &other, &origin)),
             _ => Ok(()),
         }
+    }
+
+    /// Two things from elsewhere that this text would call by one name.
+    fn clash(&self, name: &str, first: &Origin, second: &Origin) -> Report {
+        let mut diagnostic = Diagnostic::new(codes::DUPLICATE_SYMBOL, format!("`{name}` would mean two things in this module"));
+        if let Some(manifest) = &self.needs.manifest {
+            let places = Locator::new(&manifest.text);
+            let place = match second {
+                Origin::Slot { slot, .. } => places.find_key(&[Step::Key("slots"), Step::Key(slot)]),
+                _ => places.find(&[Step::Key("uses")]),
+            };
+            diagnostic = diagnostic.at(manifest, place.unwrap_or_default(), format!("this brings in a second `{name}`"));
+        }
+        for origin in [second, first] {
+            if let Some((file, span)) = self.declaration(name, origin) {
+                diagnostic = diagnostic.at(&file, span, "declared here");
+            }
+        }
+        if diagnostic.labels.is_empty() {
+            diagnostic = diagnostic.at(self.author, 0..0, "in what this file is given");
+        }
+        let advice = match (first, second) {
+            (Origin::Slot { .. }, _) | (_, Origin::Slot { .. }) => "give one of the slots a `prefix` in module.ron",
+            _ => "use one of the two interfaces only",
+        };
+        diagnostic.note(advice).into()
+    }
+
+    /// Where an interface declares what a name stands for.
+    fn declaration(&self, name: &str, origin: &Origin) -> Option<(Arc<SourceFile>, Range<usize>)> {
+        let (category, declared) = match origin {
+            Origin::Interface(category) => (category, name),
+            Origin::Offered { interface, function } => (interface, function.as_str()),
+            Origin::Slot { slot, function } => {
+                let slot = self.needs.slots.iter().find(|s| s.name == *slot)?;
+                (&slot.interface, function.as_str())
+            }
+            _ => return None,
+        };
+        let interface = (self.interfaces)(category).ok()?;
+        let span = interface.scan.item(declared)?.name_span.clone();
+        Some((Arc::clone(&interface.file), span))
     }
 
     fn params(&mut self, needs: &Needs) -> Result<(), Report> {

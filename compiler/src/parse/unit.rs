@@ -4,6 +4,7 @@ use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
+use naga::valid::Capabilities;
 use naga::{Handle, TypeInner};
 
 use super::checks;
@@ -70,6 +71,7 @@ impl Unit {
 /// The text is no WGSL, has a type error, or breaks a rule for modules.
 pub fn parse_unit(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, interface: Option<String>) -> Result<Unit, Report> {
     checks::before_parsing(&file, &scan, interface.is_some())?;
+    checks::known_params(&file, &scan, &composed, &needs)?;
     let unit = index(file, scan, composed, needs, interface)?;
     checks::after_parsing(&unit)?;
     Ok(unit)
@@ -81,14 +83,18 @@ pub fn parse_unit(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: 
 /// The text is no WGSL, or has a type error.
 pub fn parse_whole(file: Arc<SourceFile>) -> Result<Unit, Report> {
     let scan = super::scan::scan(&file.text);
-    let composed = compose(&file, &scan, &Needs::default(), &|_| {
+    let needs = Needs {
+        capabilities: Capabilities::all(),
+        ..Needs::default()
+    };
+    let composed = compose(&file, &scan, &needs, &|_| {
         Err(Diagnostic::new(codes::UNKNOWN_INTERFACE, "none here").into())
     })?;
-    index(file, scan, composed, Needs::default(), None)
+    index(file, scan, composed, needs, None)
 }
 
 fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, interface: Option<String>) -> Result<Unit, Report> {
-    let (ir, info) = parse_and_validate(&file, &composed)?;
+    let (ir, info) = parse_and_validate(&file, &composed, &needs)?;
     let functions: HashMap<_, _> = ir.functions.iter().filter_map(|(h, f)| Some((f.name.clone()?, h))).collect();
     let structs = named_structs(&ir, &composed);
     let mut unit = Unit {
@@ -127,17 +133,37 @@ pub fn check_interface(unit: &Unit, interface: &Interface, interface_unit: &Unit
     checks::against_interface(unit, interface, interface_unit)
 }
 
-fn parse_and_validate(file: &Arc<SourceFile>, composed: &Composed) -> Result<(naga::Module, naga::valid::ModuleInfo), Report> {
+fn parse_and_validate(
+    file: &Arc<SourceFile>,
+    composed: &Composed,
+    needs: &Needs,
+) -> Result<(naga::Module, naga::valid::ModuleInfo), Report> {
     let work = || {
         let mut frontend = naga::front::wgsl::Frontend::new();
         let module = frontend.parse(&composed.text).map_err(|e| parse_error(file, composed, &e))?;
-        // Bindings are numbered when linking.
-        let flags = naga::valid::ValidationFlags::all() - naga::valid::ValidationFlags::BINDINGS;
-        let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::all());
-        let info = validator.validate(&module).map_err(|e| validation_error(file, composed, &e))?;
+        let place = |span| composed.locate(span);
+        super::capabilities::linkable(&module, file, &place)?;
+        let allowed = super::capabilities::CORE | needs.capabilities;
+        let info = validate(&module, allowed).or_else(|error| {
+            // An error of the text itself, whatever a device can do, comes first.
+            validate(&module, Capabilities::all()).map_err(|e| validation_error(file, composed, &module, &e))?;
+            let missing = super::capabilities::missing(allowed, |set| validate(&module, set).is_ok());
+            let diagnostic = super::capabilities::undeclared(missing, needs.manifest.as_ref());
+            Err(Report::from(labelled(diagnostic, &error, &|range| composed.locate(range))))
+        })?;
         Ok((module, info))
     };
     guarded(codes::UPSTREAM_PANIC, "parsing a module", work).map_err(|d| d.at(file, 0..0, "in this file"))?
+}
+
+/// Validates a unit alone; bindings are numbered when linking.
+#[allow(clippy::result_large_err, reason = "naga's own error, once a unit")]
+fn validate(
+    module: &naga::Module,
+    capabilities: Capabilities,
+) -> Result<naga::valid::ModuleInfo, naga::WithSpan<naga::valid::ValidationError>> {
+    let flags = naga::valid::ValidationFlags::all() - naga::valid::ValidationFlags::BINDINGS;
+    naga::valid::Validator::new(flags, capabilities).validate(module)
 }
 
 fn parse_error(file: &Arc<SourceFile>, composed: &Composed, error: &naga::front::wgsl::ParseError) -> Report {
@@ -146,7 +172,12 @@ fn parse_error(file: &Arc<SourceFile>, composed: &Composed, error: &naga::front:
     let code = if syntax { codes::WGSL_SYNTAX } else { codes::WGSL_TYPE };
     let mut diagnostic = Diagnostic::new(code, error.message());
     for (span, text) in error.labels() {
-        diagnostic = label(diagnostic, file, composed, span, text);
+        if let Some((place, range)) = span.to_range().and_then(|range| composed.locate(range)) {
+            diagnostic = diagnostic.at(place, range, text);
+        }
+    }
+    if diagnostic.labels.is_empty() {
+        diagnostic = diagnostic.at(file, 0..0, "in what is linked to this file");
     }
     for note in error.notes() {
         diagnostic = diagnostic.note(note);
@@ -154,26 +185,116 @@ fn parse_error(file: &Arc<SourceFile>, composed: &Composed, error: &naga::front:
     diagnostic.into()
 }
 
-fn label(diagnostic: Diagnostic, file: &Arc<SourceFile>, composed: &Composed, span: naga::Span, text: &str) -> Diagnostic {
-    match span.to_range().and_then(|range| composed.locate(range)) {
-        Some((place, range)) => diagnostic.at(place, range, text),
-        None if diagnostic.labels.is_empty() => diagnostic.at(file, 0..0, "in what was linked to this file"),
-        None => diagnostic,
-    }
-}
-
-fn validation_error(file: &Arc<SourceFile>, composed: &Composed, error: &naga::WithSpan<naga::valid::ValidationError>) -> Report {
+fn validation_error(
+    file: &Arc<SourceFile>,
+    composed: &Composed,
+    module: &naga::Module,
+    error: &naga::WithSpan<naga::valid::ValidationError>,
+) -> Report {
     let message = chain(error.as_inner());
-    let types_differ = message.contains("doesn't match the type");
-    let mut diagnostic = Diagnostic::new(codes::WGSL_TYPE, message);
-    for (span, text) in error.spans() {
-        diagnostic = label(diagnostic, file, composed, *span, text);
+    let mut diagnostic = Diagnostic::new(codes::WGSL_TYPE, readable(&message, module));
+    diagnostic = labelled(diagnostic, error, &|range| composed.locate(range));
+    // A call that does not fit: what is called stands elsewhere, often in an interface.
+    if let Some(called) = called(&message, module) {
+        let place = module
+            .functions
+            .get_span(called)
+            .to_range()
+            .and_then(|range| composed.locate(range));
+        if let Some((place, span)) = place {
+            diagnostic = diagnostic.at(place, header(place, span), "called like this");
+        }
     }
-    if types_differ && composed.text.contains("alias ") {
+    if diagnostic.labels.is_empty() {
+        diagnostic = diagnostic.at(file, 0..0, "in what is linked to this file");
+    }
+    if message.contains("doesn't match the type") && composed.text.contains("alias ") {
         diagnostic = diagnostic
             .note("naga takes an array of an alias for another type than an array of what the alias stands for: spell both alike");
     }
     diagnostic.into()
+}
+
+/// Adds the places of naga's error, the innermost first, in words for people.
+pub fn labelled<'a>(
+    mut diagnostic: Diagnostic,
+    error: &naga::WithSpan<naga::valid::ValidationError>,
+    locate: &dyn Fn(Range<usize>) -> Option<(&'a Arc<SourceFile>, Range<usize>)>,
+) -> Diagnostic {
+    let mut spans: Vec<_> = error.spans().collect();
+    spans.sort_by_key(|(span, _)| span.to_range().map_or(0, |range| range.len()));
+    for (span, text) in spans {
+        let Some((file, range)) = span.to_range().and_then(locate) else {
+            continue;
+        };
+        let kind = text.strip_prefix("naga::ir::").and_then(|t| t.split(' ').next());
+        diagnostic = match kind {
+            Some("Function") => diagnostic.at(file, header(file, range), "in this function"),
+            Some(kind) => diagnostic.at(file, range, format!("this {}", in_words(kind))),
+            None => diagnostic.at(file, range, text.as_str()),
+        };
+    }
+    diagnostic
+}
+
+/// `GlobalVariable` as `global variable`.
+fn in_words(kind: &str) -> String {
+    let mut words = String::new();
+    for c in kind.chars() {
+        if c.is_ascii_uppercase() && !words.is_empty() {
+            words.push(' ');
+        }
+        words.push(c.to_ascii_lowercase());
+    }
+    words
+}
+
+/// A function's text up to its body.
+fn header(file: &SourceFile, span: Range<usize>) -> Range<usize> {
+    // The span may end early, where a slot's prefix was written into the name.
+    span.start..super::checks::header_end(&file.text, &(span.start..file.text.len()))
+}
+
+/// The function that naga's message about a call means.
+fn called(message: &str, module: &naga::Module) -> Option<Handle<naga::Function>> {
+    let number: usize = message.split_once("Call to [")?.1.split_once(']')?.0.parse().ok()?;
+    module.functions.iter().nth(number).map(|(handle, _)| handle)
+}
+
+/// naga's message without the numbers that it has for functions, types and expressions.
+pub fn readable(message: &str, module: &naga::Module) -> String {
+    let name = called(message, module).and_then(|f| module.functions[f].name.as_deref());
+    let mut text = String::new();
+    let mut rest = message;
+    while let Some(open) = rest.find('[') {
+        let Some(close) = rest[open..].find(']').map(|c| open + c) else {
+            break;
+        };
+        let number = &rest[open + 1..close];
+        if number.is_empty() || !number.bytes().all(|b| b.is_ascii_digit()) {
+            text.push_str(&rest[..=open]);
+            rest = &rest[open + 1..];
+            continue;
+        }
+        let before = &rest[..open];
+        match (name, before.strip_suffix("Some(")) {
+            (Some(name), _) if before.ends_with("Call to ") => {
+                text.push_str(before);
+                text.push_str(&format!("`{name}`"));
+                rest = &rest[close + 1..];
+            }
+            (_, Some(before)) if rest[close + 1..].starts_with(')') => {
+                text.push_str(before.trim_end());
+                rest = &rest[close + 2..];
+            }
+            _ => {
+                text.push_str(before.trim_end());
+                rest = &rest[close + 1..];
+            }
+        }
+    }
+    // Of what has no name naga writes an empty one.
+    (text + rest).replace(" '' is", " is")
 }
 
 /// An error and what caused it, in one line.

@@ -22,28 +22,75 @@ pub fn analyse(plan: &mut Plan) {
     drop_unneeded(plan);
 }
 
-/// Takes out the functions that only dead calls reached, and says of the others who calls them first.
+/// Takes out the functions that only dead calls reached, puts the others into the order in which living calls reach them
+/// (a dead call leaves no trace in the order either), and says who calls them first.
 fn drop_unneeded(plan: &mut Plan) {
-    let mut index = Vec::with_capacity(plan.functions.len());
-    let mut kept = 0;
-    for planned in &plan.functions {
-        index.push(kept);
-        kept += usize::from(planned.needed);
+    let mut order = Vec::with_capacity(plan.functions.len());
+    let mut index = vec![None; plan.functions.len()];
+    for root in 0..plan.functions.len() {
+        if matches!(plan.functions[root].body, Body::Entry(_)) {
+            by_calls(plan, root, &mut index, &mut order);
+        }
     }
-    let needed: Vec<bool> = plan.functions.iter().map(|f| f.needed).collect();
-    plan.functions.retain(|f| f.needed);
+    let mut functions: Vec<Option<Planned>> = std::mem::take(&mut plan.functions).into_iter().map(Some).collect();
+    plan.functions = order.iter().filter_map(|&old| functions[old].take()).collect();
     for caller in 0..plan.functions.len() {
         let planned = &mut plan.functions[caller];
-        planned.calls.retain(|_, id| needed[*id]);
-        planned
-            .calls
-            .values_mut()
-            .chain(&mut planned.targets)
-            .for_each(|id| *id = index[*id]);
+        planned.calls.retain(|_, id| index[*id].is_some());
+        let ids = planned.calls.values_mut().chain(&mut planned.targets);
+        ids.for_each(|id| *id = index[*id].unwrap_or(*id));
         let mut callees: Vec<usize> = planned.calls.values().chain(&planned.targets).copied().collect();
         callees.sort_unstable();
         for callee in callees {
             plan.functions[callee].caller.get_or_insert(caller);
+        }
+    }
+}
+
+/// Callees before callers, in the order of the living calls.
+fn by_calls(plan: &Plan, id: usize, index: &mut [Option<usize>], order: &mut Vec<usize>) {
+    if index[id].is_some() {
+        return;
+    }
+    let planned = &plan.functions[id];
+    let mut called = planned.targets.clone();
+    if let Some(function) = planned.ir(&plan.homes) {
+        living_calls(plan, planned, function, &function.body, &mut called);
+    }
+    for callee in called {
+        by_calls(plan, callee, index, order);
+    }
+    index[id] = Some(order.len());
+    order.push(id);
+}
+
+/// What the calls that stay lead to, in the order of the text.
+fn living_calls(plan: &Plan, planned: &Planned, function: &naga::Function, block: &Block, called: &mut Vec<usize>) {
+    let unit = &plan.homes[planned.home].unit;
+    for (statement, _) in reachable(&unit.ir, function, block) {
+        match statement {
+            Statement::Call { function, result, .. } => {
+                let read = result.is_some_and(|r| planned.live[r.index()]);
+                if read || !can_go(&plan.functions, planned, unit, *function) {
+                    called.extend(planned.calls.get(function));
+                }
+            }
+            Statement::Block(inner) => living_calls(plan, planned, function, inner, called),
+            Statement::If { condition, accept, reject } => {
+                let choice = choice(&unit.ir, function, *condition);
+                if choice != Choice::Reject {
+                    living_calls(plan, planned, function, accept, called);
+                }
+                if choice != Choice::Accept {
+                    living_calls(plan, planned, function, reject, called);
+                }
+            }
+            Statement::Switch { cases, .. } => cases.iter().for_each(|c| living_calls(plan, planned, function, &c.body, called)),
+            Statement::Loop { body, continuing, .. } => {
+                living_calls(plan, planned, function, body, called);
+                living_calls(plan, planned, function, continuing, called);
+            }
+            _ => {}
         }
     }
 }

@@ -7,10 +7,11 @@ use naga::{Block, Handle, Statement};
 
 use super::{Body, Choice, Home, Plan, Planned, Structs, bindings, choice, live, names, pure::is_pure, reachable};
 use crate::catalog::Catalog;
+use crate::contracts::compute_entry;
 use crate::diagnostics::{Diagnostic, Report, codes};
-use crate::manifest::Combine;
+use crate::manifest::{Combine, PassDecl};
 use crate::parse::{Origin, Unit};
-use crate::resolve::{Instances, Tree};
+use crate::resolve::{Instances, Place, Tree};
 
 /// Which entry points a plan starts from.
 #[derive(Clone, Debug)]
@@ -168,17 +169,23 @@ impl Reach<'_> {
             return Ok(());
         }
         let node = &self.tree.nodes[self.instances.list[home].node];
-        let diagnostic = match wanted {
-            None => Diagnostic::new(codes::NOT_A_ROOT, format!("`{}` has no entry points", node.module.name))
-                .at(&node.place.file, node.place.span(), "a pass is needed here")
-                .note("a subtree without entry points can be probed, not emitted"),
-            Some(entry) => Diagnostic::new(codes::BAD_DISPATCH, format!("`{}` has no entry point `{entry}`", node.module.name)).at(
-                &unit.file,
-                0..0,
-                "not in this file",
-            ),
-        };
-        Err(diagnostic.into())
+        if let Some(entry) = wanted {
+            let runs = |pass: &PassDecl| matches!(pass, PassDecl::Compute { entry: e, .. } if e == entry);
+            let pass = node
+                .module
+                .manifest
+                .passes
+                .iter()
+                .find(|(_, pass)| runs(pass))
+                .map_or("", |(name, _)| name);
+            return compute_entry(&node.module, &unit, pass, entry);
+        }
+        Err(
+            Diagnostic::new(codes::NOT_A_ROOT, format!("`{}` has no entry points", node.module.name))
+                .at(&node.place.file, node.place.name_span(), "a pass is needed here")
+                .note("a subtree without entry points can be probed, not emitted")
+                .into(),
+        )
     }
 
     fn visit(&mut self, target: Target) -> Result<usize, Report> {
@@ -298,9 +305,19 @@ impl Reach<'_> {
             codes::NOT_COMBINABLE,
             format!("`{interface}` does not say how results of `{function}` combine in the slot `{slot}`"),
         );
-        if let Some(node) = self.node(home) {
-            let place = &self.tree.nodes[node].place;
-            diagnostic = diagnostic.at(&place.file, place.span(), "several modules stand in that slot here");
+        let second = self
+            .node(home)
+            .and_then(|n| self.tree.nodes[n].fills.get(slot)?.nodes.get(1).copied());
+        if let Some(second) = second {
+            let place = &self.tree.nodes[second].place;
+            diagnostic = diagnostic.at(&place.file, place.name_span(), "a second module stands in that slot here");
+        }
+        if let Some(category) = category {
+            diagnostic = diagnostic.at(
+                &category.source,
+                Place::new(&category.source).keys(&["combine"]).span(),
+                "no rule for it here",
+            );
         }
         Err(diagnostic
             .note("`combine` in the interface's category.ron names the rule: Sum, Product or Chain")
@@ -336,7 +353,7 @@ impl Reach<'_> {
         let unit = Arc::clone(&self.homes[owner].unit);
         let found = unit.functions.get(function).copied();
         match (unit.origin(function), found) {
-            (Some(Origin::Own | Origin::Slot { .. } | Origin::Offered { .. } | Origin::Interface(_)), Some(handle)) => {
+            (Some(Origin::Own | Origin::Slot { .. } | Origin::Offered { .. }), Some(handle)) => {
                 self.same_signature(home, owner, function, handle)?;
                 self.call(owner, handle)
             }

@@ -178,7 +178,11 @@ impl Resolver<'_> {
             .at(
                 &at.file,
                 at.span(),
-                format!("it takes {}", if slot.arity == Arity::Single { "exactly one" } else { "fewer" }),
+                match slot.arity {
+                    Arity::Single => "it takes exactly one".to_owned(),
+                    Arity::Optional => "it takes at most one".to_owned(),
+                    Arity::List => format!("it takes at most {}", limits::LIST_LENGTH),
+                },
             )
             .into());
         }
@@ -220,6 +224,7 @@ fn constants(module: &Module, node: &Node, place: &Place) -> Result<IndexMap<Str
                 return Err(
                     Diagnostic::new(codes::INSTANCE_FIELD_FROZEN, format!("`{name}` differs from instance to instance"))
                         .at(&at.file, at.key_span(), "a recipe cannot freeze it")
+                        .note("a field of `instances` has a value for each thing of a scene: set it there")
                         .into(),
                 );
             }

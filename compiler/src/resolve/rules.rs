@@ -1,5 +1,8 @@
 //! `requires` and `excludes`.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use super::{Tree, TreeNode};
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::{Among, Rule};
@@ -11,7 +14,46 @@ pub fn check(tree: &Tree) -> Result<(), Report> {
             check_rule(tree, index, node, rule)?;
         }
     }
+    labels(tree)
+}
+
+/// One label names one subtree of a module: else nobody could say which of them is meant.
+fn labels(tree: &Tree) -> Result<(), Report> {
+    let mut known: HashMap<(&str, &str, &str), usize> = HashMap::new();
+    for (index, node) in tree.nodes.iter().enumerate() {
+        let Some(label) = &node.label else { continue };
+        let first = *known.entry((&node.module.category, &node.module.name, label)).or_insert(index);
+        if !equal(tree, first, index) {
+            let other = &tree.nodes[first].place;
+            return Err(Diagnostic::new(
+                codes::BAD_LABEL,
+                format!("the label `{label}` stands at two different subtrees of `{}`", node.module.name),
+            )
+            .at(&node.place.file, node.place.keys(&["label"]).span(), "the second one")
+            .at(&other.file, other.keys(&["label"]).span(), "the first one")
+            .note("a label names one subtree, wherever it stands: choose another one here")
+            .into());
+        }
+    }
     Ok(())
+}
+
+fn equal(tree: &Tree, a: usize, b: usize) -> bool {
+    let (x, y) = (&tree.nodes[a], &tree.nodes[b]);
+    let values = |node: &TreeNode| {
+        node.constants
+            .iter()
+            .map(|(name, (_, value))| (name.clone(), value.wgsl()))
+            .collect::<Vec<_>>()
+    };
+    let children = |node: &TreeNode| node.fills.values().map(|f| f.nodes.clone()).collect::<Vec<_>>();
+    let (p, q) = (children(x), children(y));
+    a == b
+        || Arc::ptr_eq(&x.module, &y.module)
+            && x.label == y.label
+            && values(x) == values(y)
+            && p.iter().map(Vec::len).eq(q.iter().map(Vec::len))
+            && p.iter().flatten().zip(q.iter().flatten()).all(|(&c, &d)| equal(tree, c, d))
 }
 
 fn check_rule(tree: &Tree, index: usize, node: &TreeNode, rule: &Rule) -> Result<(), Report> {

@@ -1,7 +1,11 @@
 //! The gate: nothing that has not passed naga's validator reaches emission or a GPU.
 
+mod located;
+
 use naga::WithSpan;
 use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};
+
+pub(crate) use located::located;
 
 /// A linked module that naga's validator accepted, with all its checks on.
 #[derive(Debug)]

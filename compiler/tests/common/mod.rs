@@ -89,6 +89,41 @@ pub fn small() -> Texts {
         )
 }
 
+/// The standard library's own texts and recipes, read from beside this crate.
+pub fn standard() -> Texts {
+    fn walk(folder: &std::path::Path, path: &str, texts: &mut BTreeMap<String, String>) {
+        for entry in std::fs::read_dir(folder).unwrap().map(Result::unwrap) {
+            let name = entry.file_name().into_string().unwrap();
+            let path = if path.is_empty() { name.clone() } else { format!("{path}/{name}") };
+            if entry.path().is_dir() {
+                walk(&entry.path(), &path, texts);
+            } else if name.ends_with(".wgsl") || name == "module.ron" || name == "category.ron" {
+                texts.insert(path, std::fs::read_to_string(entry.path()).unwrap());
+            }
+        }
+    }
+    let mut texts = Texts::default();
+    walk(&beside("modules"), "", &mut texts.0);
+    assert!(texts.0.len() > 40, "the standard library is not there");
+    texts
+}
+
+/// The recipes of the examples, by file name.
+pub fn recipes() -> BTreeMap<String, String> {
+    let files = std::fs::read_dir(beside("examples/recipes")).unwrap().map(Result::unwrap);
+    let recipe = |name: &str| name.ends_with(".recipe.ron");
+    let found: BTreeMap<String, String> = files
+        .filter(|f| recipe(&f.file_name().to_string_lossy()))
+        .map(|f| (f.file_name().into_string().unwrap(), std::fs::read_to_string(f.path()).unwrap()))
+        .collect();
+    assert!(!found.is_empty(), "no recipes");
+    found
+}
+
+fn beside(folder: &str) -> std::path::PathBuf {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder)
+}
+
 /// Asserts that a program's source form means what its IR form means.
 #[track_caller]
 pub fn assert_forms_agree(program: &Program) {
@@ -98,4 +133,11 @@ pub fn assert_forms_agree(program: &Program) {
         Ok(hash) => assert_eq!(hash, program.hash(), "the two forms differ:\n{text}"),
         Err(report) => panic!("the source form is no WGSL: {report}\n{text}"),
     }
+}
+
+/// Asserts that an error's text is exactly this one; the expected text begins on a line of its own.
+#[track_caller]
+pub fn assert_text(actual: &str, expected: &str) {
+    let expected = expected.strip_prefix('\n').unwrap_or(expected);
+    assert!(actual == expected, "expected:\n{expected}\nfound:\n{actual}");
 }
