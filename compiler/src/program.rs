@@ -6,7 +6,7 @@ use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::link::{link, write_source};
 use crate::manifest::{Node, PassDecl, parse_recipe};
-use crate::plan::{Plan, Roots, plan};
+use crate::plan::{Plan, Roots, with_plan};
 use crate::reflect::{Reflection, reflect};
 use crate::resolve::{Instances, Place, Tree, resolve, resolve_root};
 use crate::validate::{Validated, located, validate};
@@ -164,7 +164,7 @@ impl Catalog {
     }
 
     pub(crate) fn finish(&self, tree: Tree, instances: Instances, roots: &Roots, pass: &str) -> Result<Program, Report> {
-        let plan = plan(self, tree, instances, roots)?;
+        with_plan(self, tree, instances, roots, |plan| {
         let module = link(&plan);
         let hash = crate::hash::structural_hash(&module);
         let validated = match validate(module) {
@@ -179,6 +179,7 @@ impl Catalog {
             hash,
             plan,
             wgsl: OnceLock::new(),
+        })
         })
     }
 }

@@ -24,7 +24,7 @@ pub use branches::{Choice, choice, leaves, reachable};
 pub use live::{is_dead_store, struct_of};
 pub use names::joined;
 pub use pure::can_go;
-pub use reach::{Roots, plan};
+pub use reach::{Roots, with_plan};
 pub use structs::Structs;
 
 /// A unit in the plan: a module instance, or an interface.

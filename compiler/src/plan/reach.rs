@@ -12,6 +12,7 @@ use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::{Combine, PassDecl};
 use crate::parse::{Origin, Unit};
 use crate::resolve::{Instances, Place, Tree};
+use crate::upstream::guarded;
 
 /// Which entry points a plan starts from.
 #[derive(Clone, Debug)]
@@ -27,11 +28,32 @@ pub enum Roots {
     },
 }
 
-/// Plans a pass of a resolved tree.
+/// Deepest nesting of blocks that is linked on the caller's own stack.
+const SHALLOW_BLOCKS: usize = 24;
+/// Longest possible chain of calls that is followed there.
+const SHALLOW_CALLS: usize = 512;
+
+/// Plans a pass of a resolved tree and works with the plan, on a large stack where functions are nested or chained so deep
+/// that the caller's may not do: planning, linking and validating recurse as deep as they are.
 ///
 /// # Errors
-/// Units do not parse, do not fit together, or call each other in a circle.
-pub fn plan(catalog: &Catalog, tree: Tree, instances: Instances, roots: &Roots) -> Result<Plan, Report> {
+/// Units do not parse, do not fit together, or call each other in a circle; or the work fails.
+pub fn with_plan<T: Send>(
+    catalog: &Catalog,
+    tree: Tree,
+    instances: Instances,
+    roots: &Roots,
+    work: impl FnOnce(Plan) -> Result<T, Report> + Send,
+) -> Result<T, Report> {
+    let reach = prepare(catalog, tree, instances)?;
+    let units = || reach.homes.iter().map(|h| h.unit.depth);
+    let deep = units().any(|(blocks, _)| blocks > SHALLOW_BLOCKS) || units().map(|(_, calls)| calls).sum::<usize>() > SHALLOW_CALLS;
+    let all = || work(plan(catalog, reach, roots)?);
+    if deep { guarded(codes::UPSTREAM_PANIC, "linking", all)? } else { all() }
+}
+
+/// Parses all units of a tree.
+fn prepare(catalog: &Catalog, tree: Tree, instances: Instances) -> Result<Reach<'_>, Report> {
     let mut reach = Reach {
         catalog,
         tree,
@@ -43,6 +65,10 @@ pub fn plan(catalog: &Catalog, tree: Tree, instances: Instances, roots: &Roots) 
         stack: Vec::new(),
     };
     reach.instance_homes()?;
+    Ok(reach)
+}
+
+fn plan(catalog: &Catalog, mut reach: Reach, roots: &Roots) -> Result<Plan, Report> {
     reach.roots(roots)?;
     let Reach {
         tree,
