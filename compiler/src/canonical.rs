@@ -14,7 +14,7 @@ use crate::library::Library;
 use crate::link::link;
 use crate::manifest::{ModuleManifest, Node};
 use crate::parse::parse_whole;
-use crate::plan::{Roots, plan};
+use crate::plan::{Roots, plan, roomy};
 use crate::resolve::{Instances, Place, resolve_root};
 
 /// Hash of the canonical form of a complete WGSL text. Of a program's source form it is the program's hash.
@@ -22,7 +22,7 @@ use crate::resolve::{Instances, Place, resolve_root};
 /// # Errors
 /// The text is no WGSL, has a type error, or no entry points.
 pub fn canonical_hash(name: &str, wgsl: &str) -> Result<u128, Report> {
-    canonical_module(name, wgsl).map(|module| structural_hash(&module))
+    canonical(name, wgsl, structural_hash)
 }
 
 /// The canonical form of a complete WGSL text.
@@ -30,6 +30,10 @@ pub fn canonical_hash(name: &str, wgsl: &str) -> Result<u128, Report> {
 /// # Errors
 /// As for [`canonical_hash`].
 pub fn canonical_module(name: &str, wgsl: &str) -> Result<naga::Module, Report> {
+    canonical(name, wgsl, naga::Module::clone)
+}
+
+fn canonical<T: Send>(name: &str, wgsl: &str, of: impl FnOnce(&naga::Module) -> T + Send) -> Result<T, Report> {
     let catalog = Catalog::load(Arc::new(Nothing))?;
     let file = SourceFile::new(name, wgsl);
     let unit = Arc::new(parse_whole(Arc::clone(&file))?);
@@ -42,7 +46,8 @@ pub fn canonical_module(name: &str, wgsl: &str) -> Result<naga::Module, Report> 
     });
     let tree = resolve_root(&catalog, module, &Node::new(name), Place::new(&file))?;
     let instances = Instances::find(&catalog, &tree);
-    Ok(link(&plan(&catalog, tree, instances, &Roots::Main)?))
+    let plan = plan(&catalog, tree, instances, &Roots::Main)?;
+    Ok(roomy(plan.deep, || of(&link(&plan)))?)
 }
 
 /// A manifest that declares nothing.

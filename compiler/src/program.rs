@@ -7,7 +7,7 @@ use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::hash::structural_hash;
 use crate::link::{link, write_source};
 use crate::manifest::{Node, PassDecl, parse_recipe};
-use crate::plan::{Plan, Roots, plan};
+use crate::plan::{Plan, Roots, plan, roomy};
 use crate::reflect::{Reflection, reflect};
 use crate::resolve::{Instances, Place, Tree, resolve, resolve_root};
 use crate::validate::{Validated, located, validate};
@@ -186,21 +186,29 @@ impl Catalog {
     /// The linked module does not pass naga's validator.
     pub fn finish(&self, plan: LinkPlan) -> Result<Program, Report> {
         let LinkPlan { plan, pass } = plan;
-        let module = link(&plan);
-        let hash = structural_hash(&module);
-        let validated = match validate(module) {
-            Ok(validated) => validated,
-            // The module is gone with the error: writing it again is for failures only.
-            Err(error) => return Err(located(&plan, &link(&plan), &error)),
-        };
-        let reflection = reflect(self, &plan, &validated, hash, &pass);
-        Ok(Program {
-            validated,
-            reflection,
-            hash,
-            plan,
-            wgsl: OnceLock::new(),
-        })
+        roomy(plan.deep, move || {
+            let module = link(&plan);
+            let hash = structural_hash(&module);
+            let validated = match validate(module) {
+                Ok(validated) => validated,
+                // The module is gone with the error: writing it again is for failures only.
+                Err(error) => return Err(located(&plan, &link(&plan), &error)),
+            };
+            let reflection = reflect(self, &plan, &validated, hash, &pass);
+            // While there is room for it.
+            let wgsl = if plan.deep {
+                OnceLock::from(write_source(&plan))
+            } else {
+                OnceLock::new()
+            };
+            Ok(Program {
+                validated,
+                reflection,
+                hash,
+                plan,
+                wgsl,
+            })
+        })?
     }
 }
 
@@ -213,12 +221,18 @@ pub struct LinkPlan {
 
 impl LinkPlan {
     /// Writes the plan as IR, which nobody has validated yet.
-    pub fn link(&self) -> naga::Module {
-        link(&self.plan)
+    ///
+    /// # Errors
+    /// There is no thread for a plan that wants a large stack.
+    pub fn link(&self) -> Result<naga::Module, Report> {
+        Ok(roomy(self.plan.deep, || link(&self.plan))?)
     }
 
     /// Writes the plan as source.
-    pub fn source(&self) -> String {
-        write_source(&self.plan)
+    ///
+    /// # Errors
+    /// As for [`LinkPlan::link`].
+    pub fn source(&self) -> Result<String, Report> {
+        Ok(roomy(self.plan.deep, || write_source(&self.plan))?)
     }
 }

@@ -57,27 +57,27 @@ fn c_plan(bencher: Bencher) {
 #[divan::bench]
 fn d_link_ir(bencher: Bencher) {
     let plan = plan();
-    bencher.bench(|| black_box(&plan).link());
+    bencher.bench(|| black_box(&plan).link().unwrap());
 }
 
 /// Write the plan as source.
 #[divan::bench]
 fn e_write_source(bencher: Bencher) {
     let plan = plan();
-    bencher.bench(|| black_box(&plan).source());
+    bencher.bench(|| black_box(&plan).source().unwrap());
 }
 
 /// The canonical hash of the linked module.
 #[divan::bench]
 fn f_hash(bencher: Bencher) {
-    let module = plan().link();
+    let module = plan().link().unwrap();
     bencher.bench(|| hash::structural_hash(black_box(&module)));
 }
 
 /// naga's compaction of the linked module, which the linker does without.
 #[divan::bench]
 fn g_compact(bencher: Bencher) {
-    let module = plan().link();
+    let module = plan().link().unwrap();
     bencher.with_inputs(|| module.clone()).bench_values(|mut module| {
         compact::compact(&mut module, compact::KeepUnused::No);
         module
@@ -87,7 +87,7 @@ fn g_compact(bencher: Bencher) {
 /// naga's validation with all checks: the floor that everyone pays.
 #[divan::bench]
 fn h_validate(bencher: Bencher) {
-    let module = plan().link();
+    let module = plan().link().unwrap();
     bencher
         .with_inputs(|| module.clone())
         .bench_values(|module| validate::validate(module).unwrap());

@@ -118,7 +118,9 @@ impl Composed {
         let segment = self.segments.iter().find(|s| s.range.contains(&span.start))?;
         let start = segment.start + span.start - segment.range.start;
         let end = start + span.end.min(segment.range.end).saturating_sub(span.start);
-        Some((&segment.file, start..end))
+        // The author's segment also holds the line end that was put behind it.
+        let last = segment.file.text.len();
+        Some((&segment.file, start.min(last)..end.min(last)))
     }
 }
 

@@ -51,6 +51,8 @@ pub struct Unit {
     pub words: HashSet<String>,
     /// Results of calls and other statements, with their places: by function handle, then by entry point.
     pub results: Vec<Vec<(Handle<naga::Expression>, Range<usize>)>>,
+    /// Deepest nesting of blocks, longest chain of calls: how deep a walk over it may recurse.
+    pub depth: (usize, usize),
 }
 
 impl Unit {
@@ -102,6 +104,7 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
         words: HashSet::default(),
         results: Vec::new(),
         dependent: Vec::new(),
+        depth: depth(&ir),
         file,
         scan,
         composed,
@@ -168,7 +171,8 @@ fn validate(
 
 fn parse_error(file: &Arc<SourceFile>, composed: &Composed, error: &naga::front::wgsl::ParseError) -> Report {
     // naga has one error type for both; its syntax errors all speak of what the parser expected.
-    let syntax = error.message().starts_with("expected") && error.message().contains("found");
+    let syntax =
+        (error.message().starts_with("expected") && error.message().contains("found")) || error.message().starts_with("unterminated");
     let code = if syntax { codes::WGSL_SYNTAX } else { codes::WGSL_TYPE };
     let mut diagnostic = Diagnostic::new(code, error.message());
     for (span, text) in error.labels() {
@@ -415,6 +419,39 @@ fn dependents(unit: &Unit) -> Vec<bool> {
         dependent.push(stub || touches || calls_dependent(&function.body, &dependent));
     }
     dependent
+}
+
+/// Deepest nesting of blocks and longest chain of calls. Callees precede callers in the arena.
+fn depth(ir: &naga::Module) -> (usize, usize) {
+    let mut chains: Vec<usize> = Vec::with_capacity(ir.functions.len());
+    let mut deepest = (0, 0);
+    let entries = ir.entry_points.iter().map(|e| &e.function);
+    for function in ir.functions.iter().map(|(_, f)| f).chain(entries) {
+        let mut chain = 0;
+        let blocks = block_depth(&function.body, &mut |callee| chain = chain.max(chains[callee.index()]));
+        chains.push(chain + 1);
+        deepest = (deepest.0.max(blocks), deepest.1.max(chain + 1));
+    }
+    deepest
+}
+
+fn block_depth(block: &naga::Block, called: &mut dyn FnMut(Handle<naga::Function>)) -> usize {
+    let mut deepest = 0;
+    for statement in block {
+        let inner = match statement {
+            naga::Statement::Call { function, .. } => {
+                called(*function);
+                0
+            }
+            naga::Statement::Block(inner) => block_depth(inner, called),
+            naga::Statement::If { accept, reject, .. } => block_depth(accept, called).max(block_depth(reject, called)),
+            naga::Statement::Switch { cases, .. } => cases.iter().map(|c| block_depth(&c.body, called)).max().unwrap_or(0),
+            naga::Statement::Loop { body, continuing, .. } => block_depth(body, called).max(block_depth(continuing, called)),
+            _ => 0,
+        };
+        deepest = deepest.max(inner + 1);
+    }
+    deepest
 }
 
 fn constant_is_param(unit: &Unit, constant: Handle<naga::Constant>) -> bool {

@@ -25,7 +25,7 @@ pub use bindings::{Block, GROUPS, PlannedGlobal, declared, declaring, is_instanc
 pub use branches::{Choice, choice, leaves, reachable};
 pub use names::joined;
 pub use pure::can_go;
-pub use reach::{Roots, plan};
+pub use reach::{Roots, plan, roomy};
 pub use stores::{is_dead_store, struct_of};
 pub use structs::Structs;
 
@@ -106,6 +106,8 @@ pub struct Plan {
     pub globals: Vec<PlannedGlobal>,
     /// Uniform blocks by group.
     pub blocks: Vec<Block>,
+    /// Whether functions are nested or chained so deep that walks over them want a large stack: see [`roomy`].
+    pub deep: bool,
     /// Emitted names of constants, overrides, structs, aliases and variables: home, name in the unit.
     pub names: HashMap<(usize, String), String>,
 }

@@ -12,6 +12,7 @@ use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::{Combine, PassDecl};
 use crate::parse::{Origin, Unit};
 use crate::resolve::{Instances, Place, Tree};
+use crate::upstream::guarded;
 
 /// Which entry points a plan starts from.
 #[derive(Clone, Debug)]
@@ -27,11 +28,38 @@ pub enum Roots {
     },
 }
 
+/// Deepest nesting of blocks that is linked on the caller's own stack.
+const SHALLOW_BLOCKS: usize = 24;
+/// Longest possible chain of calls that is followed there.
+const SHALLOW_CALLS: usize = 512;
+
 /// Plans a pass of a resolved tree.
 ///
 /// # Errors
 /// Units do not parse, do not fit together, or call each other in a circle.
 pub fn plan(catalog: &Catalog, tree: Tree, instances: Instances, roots: &Roots) -> Result<Plan, Report> {
+    let reach = prepare(catalog, tree, instances)?;
+    let units = || reach.homes.iter().map(|h| h.unit.depth);
+    let deep = units().any(|(blocks, _)| blocks > SHALLOW_BLOCKS) || units().map(|(_, calls)| calls).sum::<usize>() > SHALLOW_CALLS;
+    let mut plan = roomy(deep, || follow(catalog, reach, roots))??;
+    plan.deep = deep;
+    Ok(plan)
+}
+
+/// Does work that recurses as deep as functions are nested or call each other, on a large stack where that is deep.
+///
+/// # Errors
+/// There is no such stack to be had, or the work panics on it.
+pub fn roomy<T: Send>(deep: bool, work: impl FnOnce() -> T + Send) -> Result<T, Diagnostic> {
+    if deep {
+        guarded(codes::UPSTREAM_PANIC, "linking", work)
+    } else {
+        Ok(work())
+    }
+}
+
+/// Parses all units of a tree.
+fn prepare(catalog: &Catalog, tree: Tree, instances: Instances) -> Result<Reach<'_>, Report> {
     let mut reach = Reach {
         catalog,
         tree,
@@ -43,6 +71,10 @@ pub fn plan(catalog: &Catalog, tree: Tree, instances: Instances, roots: &Roots) 
         stack: Vec::new(),
     };
     reach.instance_homes()?;
+    Ok(reach)
+}
+
+fn follow(catalog: &Catalog, mut reach: Reach, roots: &Roots) -> Result<Plan, Report> {
     reach.roots(roots)?;
     let Reach {
         tree,
@@ -65,6 +97,7 @@ pub fn plan(catalog: &Catalog, tree: Tree, instances: Instances, roots: &Roots) 
         live_params: Default::default(),
         globals: Vec::new(),
         blocks: Vec::new(),
+        deep: false,
         names: HashMap::default(),
     };
     live::analyse(&mut plan);
