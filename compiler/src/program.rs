@@ -49,7 +49,7 @@ impl Program {
 
     /// Why a function, binding, parameter, override, struct or constant is there; empty if it is not.
     pub fn why(&self, name: &str) -> Vec<Why> {
-        why::why(&self.plan, &self.reflection, name)
+        why::why(&self.plan, &self.reflection, self.wgsl(), name)
     }
 
     /// The tree of the recipe as it was resolved, defaults included: a line a module with its slot path.

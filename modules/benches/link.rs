@@ -1,7 +1,7 @@
 //! What a permutation costs, step by step, for the forward recipe of the first scene: `cargo bench -p shadewright-modules`.
 //!
 //! All steps run in one process, interleaved by nothing: compare the ratios, not the times.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use divan::{Bencher, black_box};
 use shadewright_compiler::naga::{compact, front, valid};

@@ -8,6 +8,7 @@ use glam::{Mat4, Vec3};
 use indexmap::IndexMap;
 use shadewright_compiler::manifest::{Filling, Node, Value};
 use shadewright_compiler::{Catalog, Recipe};
+use shadewright_modules::{Folder, Overlay};
 use shadewright_runtime::frame::{Bounds, Camera, Draw, Frame, Lights, Material, Mesh, Renderer, Settings, Texture};
 use shadewright_runtime::gpu::Gpu;
 use shadewright_runtime::scene::SceneFile;
@@ -91,7 +92,11 @@ fn frame(material: Material, lights: Vec<Lights>, draws: Vec<Draw>) -> Frame {
 }
 
 fn hdr(frame: &Frame) -> Vec<[f32; 4]> {
-    let mut renderer = Renderer::new(&GPU, Arc::clone(&CATALOG));
+    hdr_with(&CATALOG, frame)
+}
+
+fn hdr_with(catalog: &Arc<Catalog>, frame: &Frame) -> Vec<[f32; 4]> {
+    let mut renderer = Renderer::new(&GPU, Arc::clone(catalog));
     let image = renderer.render(frame).unwrap().read_hdr(&GPU).unwrap();
     assert!(image.iter().flatten().all(|v| v.is_finite()), "NaN or infinite");
     image
@@ -220,6 +225,40 @@ fn shadows_fall_where_geometry_says() {
             compared > 2000 && dark.iter().all(|n| (*n > 20) == casts),
             "{compared} texels, {dark:?} in shadow"
         );
+    }
+}
+
+/// Catches two kinds of lights that share a shadow map because their visibility modules are equal: index 0 of one would
+/// look into the views of the other. The second kind is a copy of the first under another name, found by its folder alone.
+#[test]
+fn equal_visibility_below_two_kinds_of_light_has_a_map_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let bulb = folder.path().join("light/bulb");
+    std::fs::create_dir_all(&bulb).unwrap();
+    for (from, to) in [("module.ron", "module.ron"), ("point.wgsl", "bulb.wgsl")] {
+        let text = shadewright_modules::library()
+            .read(&format!("light/point/{from}"))
+            .unwrap()
+            .unwrap();
+        std::fs::write(bulb.join(to), text).unwrap();
+    }
+    let library = Overlay(vec![Arc::new(Folder::new(folder.path())), shadewright_modules::library()]);
+    let catalog = Arc::new(Catalog::load(Arc::new(library)).unwrap());
+    let material = material(
+        r#"(module: "forward", fill: {"brdf": "lambert", "lights": [
+            (module: "point", fill: {"visibility": "cube-map"}), (module: "bulb", fill: {"visibility": "cube-map"}),
+        ]})"#,
+    );
+    let (lamp, bulb) = (Vec3::new(0.0, 3.0, 0.0), Vec3::new(3.0, 3.0, 0.0));
+    let lights = lights(&material, vec![vec![point(lamp, 900.0)], vec![point(bulb, 500.0)]]);
+    let tile = draw(&square(0.5), Vec3::new(1.0, 1.5, 0.0));
+    let image = hdr_with(&catalog, &frame(material, lights, vec![draw(&square(6.0), Vec3::ZERO), tile]));
+    let lux = |from: Vec3, cd: f32, at: Vec3| cd * from.y / (from - at).length().powi(3);
+    for (column, lit_by_lamp, lit_by_bulb) in [(48, false, true), (24, true, false), (10, true, true)] {
+        let ground = place(column, 32);
+        let sum = f32::from(u8::from(lit_by_lamp)) * lux(lamp, 900.0, ground) + f32::from(u8::from(lit_by_bulb)) * lux(bulb, 500.0, ground);
+        let (found, expected) = (image[(32 * SIDE + column) as usize][0], 0.8 / std::f32::consts::PI * sum);
+        assert!((found / expected - 1.0).abs() < 1e-3, "{ground}: {found}, not {expected}");
     }
 }
 

@@ -4,7 +4,7 @@
 //! where each item stands and which of its words refer to module-scope names, so that the authors' own text can be
 //! linked. Of text that naga refuses it may say anything, but never panics.
 
-use std::collections::HashSet;
+use rustc_hash::FxHashSet as HashSet;
 use std::ops::Range;
 
 use super::lex::{Kind, Token, lex};
@@ -203,7 +203,7 @@ fn scan_item(text: &str, tokens: &[Token], range: Range<usize>) -> Option<Item> 
         span,
         tokens: range.clone(),
         references: Vec::new(),
-        locals: HashSet::new(),
+        locals: HashSet::default(),
         fields: Vec::new(),
         result: 0..0,
         body: 0..0,
@@ -448,15 +448,15 @@ impl Walker<'_> {
 
     fn push(&mut self) {
         if let Some(locals) = &mut self.locals {
-            locals.scopes.push(HashSet::new());
+            locals.scopes.push(HashSet::default());
         }
     }
 
     fn pop(&mut self) {
-        if let Some(locals) = &mut self.locals {
-            if locals.scopes.len() > 1 {
-                locals.scopes.pop();
-            }
+        if let Some(locals) = &mut self.locals
+            && locals.scopes.len() > 1
+        {
+            locals.scopes.pop();
         }
     }
 

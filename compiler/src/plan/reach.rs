@@ -1,6 +1,6 @@
 //! From the entry points to every function that is called, across modules.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 use std::sync::Arc;
 
 use naga::{Block, Handle, Statement};
@@ -36,9 +36,9 @@ pub fn plan(catalog: &Catalog, tree: Tree, instances: Instances, roots: &Roots) 
         tree,
         instances,
         homes: Vec::new(),
-        interfaces: HashMap::new(),
+        interfaces: HashMap::default(),
         functions: Vec::new(),
-        memo: HashMap::new(),
+        memo: HashMap::default(),
         stack: Vec::new(),
     };
     reach.instance_homes()?;
@@ -64,7 +64,7 @@ pub fn plan(catalog: &Catalog, tree: Tree, instances: Instances, roots: &Roots) 
         live_params: Default::default(),
         globals: Vec::new(),
         blocks: Vec::new(),
-        names: HashMap::new(),
+        names: HashMap::default(),
     };
     live::analyse(&mut plan);
     bindings::allocate(catalog, &mut plan)?;
@@ -190,7 +190,7 @@ impl Reach<'_> {
         }
         self.stack.push(target.clone());
         let (home, body) = target.clone();
-        let mut calls = HashMap::new();
+        let mut calls = HashMap::default();
         let mut targets = Vec::new();
         let pure;
         if let Body::Combined { slot, function, .. } = &body {
@@ -208,10 +208,10 @@ impl Reach<'_> {
             let mut called = Vec::new();
             calls_in(&unit.ir, function, &function.body, &mut called);
             for handle in called {
-                if !calls.contains_key(&handle) {
+                if let std::collections::hash_map::Entry::Vacant(e) = calls.entry(handle) {
                     let next = self.call(home, handle)?;
                     let id = self.visit(next)?;
-                    calls.insert(handle, id);
+                    e.insert(id);
                 }
             }
             pure = is_pure(&unit, function, &|f| {
