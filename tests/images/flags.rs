@@ -92,7 +92,7 @@ fn objects_that_receive_no_light_only_glow() {
     let glow = r#"(mesh: "floor", material: "glow", receives_light: RECEIVES),"#;
     near(at(&shown(&glow.replace("RECEIVES", "true")), MIDDLE), LIT + 7.0);
     assert_eq!(at(&shown(&glow.replace("RECEIVES", "false")), MIDDLE), 7.0);
-    // It still casts: the floor below is dark beside what it hides (nothing: the tile is as high as it is visible, so look past it).
+    // It still casts: the floor below it is dark.
     let tile = r#"(mesh: "tile", material: "glow", translate: (0, 1, 0), receives_light: false, visible: false),"#;
     assert_eq!(at(&shown(&format!("{FLOOR}{tile}")), MIDDLE), 0.0);
 }
