@@ -165,21 +165,21 @@ impl Catalog {
 
     pub(crate) fn finish(&self, tree: Tree, instances: Instances, roots: &Roots, pass: &str) -> Result<Program, Report> {
         with_plan(self, tree, instances, roots, |plan| {
-        let module = link(&plan);
-        let hash = crate::hash::structural_hash(&module);
-        let validated = match validate(module) {
-            Ok(validated) => validated,
-            // The module is gone with the error: writing it again is for failures only.
-            Err(error) => return Err(located(&plan, &link(&plan), &error)),
-        };
-        let reflection = reflect(self, &plan, &validated, hash, pass);
-        Ok(Program {
-            validated,
-            reflection,
-            hash,
-            plan,
-            wgsl: OnceLock::new(),
-        })
+            let module = link(&plan);
+            let hash = crate::hash::structural_hash(&module);
+            let validated = match validate(module) {
+                Ok(validated) => validated,
+                // The module is gone with the error: writing it again is for failures only.
+                Err(error) => return Err(located(&plan, &link(&plan), &error)),
+            };
+            let reflection = reflect(self, &plan, &validated, hash, pass);
+            Ok(Program {
+                validated,
+                reflection,
+                hash,
+                plan,
+                wgsl: OnceLock::new(),
+            })
         })
     }
 }

@@ -95,14 +95,20 @@ fn assert_lawful(what: &str, program: &Program) {
     };
     assert_eq!(sizes(module), sizes(&compacted), "{what} has more than it needs:\n{text}");
     let expressions = |m: &naga::Module| m.functions.iter().map(|(_, f)| f.expressions.len()).sum::<usize>();
-    assert_eq!(expressions(module), expressions(&compacted), "{what} has expressions that nobody needs:\n{text}");
+    assert_eq!(
+        expressions(module),
+        expressions(&compacted),
+        "{what} has expressions that nobody needs:\n{text}"
+    );
 }
 
 /// Checks what a recipe gives, and its passes; says how many programs that were.
 fn check(catalog: &Catalog, what: &str, recipe: &Recipe) -> usize {
     let passes = passes(catalog, recipe);
     for pass in &passes {
-        let program = catalog.compile(recipe, pass).unwrap_or_else(|report| panic!("{what}, {pass}: {report}"));
+        let program = catalog
+            .compile(recipe, pass)
+            .unwrap_or_else(|report| panic!("{what}, {pass}: {report}"));
         assert_lawful(&format!("{what}, {pass}"), &program);
     }
     passes.len()
@@ -123,7 +129,10 @@ fn alone(catalog: &Catalog, name: &str) -> Node {
     for (slot, declared) in &module.manifest.slots {
         if declared.arity == Arity::Single && declared.default.is_none() {
             let first = catalog.fits(&declared.interface).into_iter().next().unwrap();
-            node.fill.insert(slot.clone(), Filling::One(alone(catalog, &format!("{}/{first}", declared.interface))));
+            node.fill.insert(
+                slot.clone(),
+                Filling::One(alone(catalog, &format!("{}/{first}", declared.interface))),
+            );
         }
     }
     node
@@ -144,12 +153,20 @@ fn variants(catalog: &Catalog, node: &Node, depth: usize, out: &mut Vec<(String,
             if depth > 0 {
                 let mut below = Vec::new();
                 variants(catalog, &child, depth - 1, &mut below);
-                out.extend(below.into_iter().map(|(what, child)| (format!("{slot}: {fits}, {what}"), with(child))));
+                out.extend(
+                    below
+                        .into_iter()
+                        .map(|(what, child)| (format!("{slot}: {fits}, {what}"), with(child))),
+                );
             }
         }
         if declared.arity == Arity::List {
             let all = catalog.fits(&declared.interface);
-            let nodes: Vec<Node> = all.iter().chain(&all).map(|n| alone(catalog, &format!("{}/{n}", declared.interface))).collect();
+            let nodes: Vec<Node> = all
+                .iter()
+                .chain(&all)
+                .map(|n| alone(catalog, &format!("{}/{n}", declared.interface)))
+                .collect();
             let mut changed = node.clone();
             changed.fill.insert(slot.clone(), Filling::Many(nodes));
             out.push((format!("{slot}: all, twice"), changed));
@@ -197,7 +214,9 @@ fn of_every_probe_and_every_module_check() {
         catalog.check_module(&name).unwrap_or_else(|report| panic!("{name}: {report}"));
         let recipe = Recipe::from(alone(&catalog, &name));
         for function in catalog.functions(&module.category).unwrap().keys() {
-            let Some(program) = probe(&catalog, &recipe, function) else { continue };
+            let Some(program) = probe(&catalog, &recipe, function) else {
+                continue;
+            };
             assert_lawful(&format!("{name}, {function}"), &program);
             tried += 1;
         }
@@ -217,7 +236,9 @@ fn of_frozen_parameters() {
             frozen.freeze.insert(param.clone(), declared.default.clone());
         }
         for function in catalog.functions(&module.category).unwrap().keys() {
-            let Some(program) = probe(&catalog, &Recipe::from(frozen.clone()), function) else { continue };
+            let Some(program) = probe(&catalog, &Recipe::from(frozen.clone()), function) else {
+                continue;
+            };
             let own = |p: &&ParamUse| {
                 p.module == module.name && module.manifest.params.contains_key(&p.name) && !matches!(p.place, ParamPlace::Constant { .. })
             };

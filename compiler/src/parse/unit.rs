@@ -157,7 +157,8 @@ fn validate(
 
 fn parse_error(file: &Arc<SourceFile>, composed: &Composed, error: &naga::front::wgsl::ParseError) -> Report {
     // naga has one error type for both; its syntax errors all speak of what the parser expected.
-    let syntax = (error.message().starts_with("expected") && error.message().contains("found")) || error.message().starts_with("unterminated");
+    let syntax =
+        (error.message().starts_with("expected") && error.message().contains("found")) || error.message().starts_with("unterminated");
     let code = if syntax { codes::WGSL_SYNTAX } else { codes::WGSL_TYPE };
     let mut diagnostic = Diagnostic::new(code, error.message());
     for (span, text) in error.labels() {

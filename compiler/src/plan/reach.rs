@@ -49,7 +49,11 @@ pub fn with_plan<T: Send>(
     let units = || reach.homes.iter().map(|h| h.unit.depth);
     let deep = units().any(|(blocks, _)| blocks > SHALLOW_BLOCKS) || units().map(|(_, calls)| calls).sum::<usize>() > SHALLOW_CALLS;
     let all = || work(plan(catalog, reach, roots)?);
-    if deep { guarded(codes::UPSTREAM_PANIC, "linking", all)? } else { all() }
+    if deep {
+        guarded(codes::UPSTREAM_PANIC, "linking", all)?
+    } else {
+        all()
+    }
 }
 
 /// Parses all units of a tree.
