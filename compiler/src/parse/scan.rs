@@ -4,7 +4,7 @@
 //! where each item stands and which of its words refer to module-scope names, so that the authors' own text can be
 //! linked. Of text that naga refuses it may say anything, but never panics.
 
-use rustc_hash::FxHashSet as HashSet;
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::ops::Range;
 
 use super::lex::{Kind, Token, lex};
@@ -84,12 +84,14 @@ pub struct Scan {
     pub tokens: Vec<Token>,
     /// Items in the order of the text.
     pub items: Vec<Item>,
+    /// The first item of each name.
+    by_name: HashMap<String, usize>,
 }
 
 impl Scan {
     /// The item that declares this name.
     pub fn item(&self, name: &str) -> Option<&Item> {
-        self.items.iter().find(|i| i.name == name && !name.is_empty())
+        self.by_name.get(name).map(|&index| &self.items[index])
     }
 
     /// Bytes of a range of tokens; empty for an empty range.
@@ -120,7 +122,11 @@ pub fn scan(text: &str) -> Scan {
         }
         at = end;
     }
-    Scan { tokens, items }
+    let mut by_name = HashMap::default();
+    for (index, item) in items.iter().enumerate().filter(|(_, i)| !i.name.is_empty()) {
+        by_name.entry(item.name.clone()).or_insert(index);
+    }
+    Scan { tokens, items, by_name }
 }
 
 /// One past the item's last token: its semicolon, or the brace that closes its body.
