@@ -106,6 +106,7 @@ fn choose<'a>(module: &'a Module, target: Target, name: Option<&str>) -> Result<
 
 /// Whether the target can express what the module needs.
 fn supported(module: &Module, target: Target) -> Result<(), Diagnostic> {
+    #[allow(clippy::result_large_err)] // naga's own error
     let verdict = |capabilities| Validator::new(ValidationFlags::all(), capabilities).validate(module);
     let Err(error) = verdict(target.capabilities()) else {
         return Ok(());
