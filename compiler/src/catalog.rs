@@ -414,7 +414,7 @@ fn needs(module: &Module, constants: &IndexMap<String, (Value, Typed)>) -> Resul
     };
     for (name, param) in &manifest.params {
         if let Some((_, value)) = constants.get(name) {
-            needs.constants.insert(name.clone(), value.clone());
+            needs.constants.insert(name.clone(), *value);
             continue;
         }
         match param.mode {

@@ -1,4 +1,5 @@
 //! Errors in manifests, whole texts. The places and words are the product: a change of any of them must be meant.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod common;
 

@@ -1,4 +1,5 @@
 //! Errors in the WGSL of modules and interfaces, whole texts: a change of a place or word must be meant.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod common;
 

@@ -150,7 +150,7 @@ error[SW0601]: MSL cannot express this shader
     let half = "enable f16; @compute @workgroup_size(1) fn main() { var x = 1.0h; x += 1.0h; }";
     let expected = "\
 error[SW0601]: GLSL cannot express this shader
- = A scalar with an unsupported width was requested: Scalar { kind: Float, width: 2 }
+ = it has no floating-point numbers of 16 bits
 ";
     assert_eq!(error(half, Target::Glsl, None), expected);
     assert!(text(half, Target::Msl, None).contains("half"));

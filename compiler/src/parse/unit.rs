@@ -209,7 +209,7 @@ fn validation_error(
 pub fn labelled<'a>(
     mut diagnostic: Diagnostic,
     error: &naga::WithSpan<naga::valid::ValidationError>,
-    locate: &dyn Fn(Range<usize>) -> Option<(&'a Arc<SourceFile>, Range<usize>)>,
+    locate: &super::capabilities::Locate<'a>,
 ) -> Diagnostic {
     let mut spans: Vec<_> = error.spans().collect();
     spans.sort_by_key(|(span, _)| span.to_range().map_or(0, |range| range.len()));
