@@ -27,7 +27,7 @@
 //! // A BRDF by itself has no entry points; a probe calls it over a table of inputs.
 //! let recipe = Recipe::parse("example", r#"(module: "microfacet", fill: {"ndf": "ggx"})"#)?;
 //! let program = catalog.compile_probe(&recipe, "brdf")?;
-//! assert!(program.wgsl().contains("fn brdf"));
+//! assert!(program.wgsl().contains("fn microfacet_brdf("));
 //! assert!(program.reflection().functions.iter().any(|function| function.module == "ggx"));
 //! # Ok::<(), shadewright::compiler::Report>(())
 //! ```

@@ -1,4 +1,5 @@
 //! `emit` and `check`.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod support;
 
@@ -181,13 +182,10 @@ fn a_failure_leaves_old_files_alone() {
     assert_eq!(names(folder.path()), ["a.json", "a.wgsl"]);
 }
 
-/// Catches a rename that replaces a device or a link by a file.
+/// Catches a rename that replaces a link by a file.
 #[cfg(unix)]
 #[test]
-fn links_and_devices_stay() {
-    use std::os::unix::fs::FileTypeExt;
-    good(&["emit", MATTE, "-o", "/dev/null"]);
-    assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+fn links_stay() {
     let folder = tempfile::tempdir().expect("a folder");
     let (file, link) = (folder.path().join("a.wgsl"), folder.path().join("b.wgsl"));
     std::fs::write(&file, "old").unwrap();
@@ -195,6 +193,27 @@ fn links_and_devices_stay() {
     good(&["emit", MATTE, "-o", link.to_str().unwrap()]);
     assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink());
     assert_eq!(std::fs::read_to_string(&file).unwrap(), good(&["emit", MATTE]).text());
+}
+
+/// Catches a rename that replaces a pipe or a device by a file. A pipe of the test's own stands for both: were this to fail on a
+/// real device, the device would be gone.
+#[cfg(unix)]
+#[test]
+fn pipes_stay() {
+    use std::os::unix::fs::FileTypeExt;
+    use std::process::{Command, Stdio};
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo runs").success());
+    let mut reader = Command::new("cat").arg(&pipe).stdout(Stdio::piped()).spawn().expect("cat runs");
+    good(&["emit", MATTE, "-o", pipe.to_str().unwrap()]);
+    if !std::fs::symlink_metadata(&pipe).unwrap().file_type().is_fifo() {
+        // Nobody will ever write to what the reader waits for.
+        reader.kill().expect("our own child");
+        panic!("the pipe is a file now");
+    }
+    let read = reader.wait_with_output().expect("cat ends").stdout;
+    assert_eq!(read, good(&["emit", MATTE]).out);
 }
 
 /// Catches a panic, or a complaint, when the reader of the output has gone.
@@ -283,6 +302,8 @@ fn check_finds_all_that_is_wrong() {
     assert!(ran.text().contains(&format!("ok     recipe {good_one}")), "{}", ran.text());
     assert!(ran.err.contains("SW0202") && ran.err.contains("SW0302"), "{}", ran.err);
     let ran = run(&["check", "--format", "json", &good_one, &category]);
+    // The last in order is good; the first is wrong all the same.
+    assert_eq!(ran.status, 1);
     let json = ran.json();
     let wrong = json
         .as_array()
@@ -291,6 +312,8 @@ fn check_finds_all_that_is_wrong() {
         .find(|item| item["ok"] == false)
         .expect("one is wrong");
     assert_eq!(wrong["diagnostics"][0]["code"], "SW0202");
+    let from_input = run_with_input(&["check", "-"], "\"lambert\"");
+    assert_eq!((from_input.status, from_input.text()), (0, "ok     recipe -\n"));
     bad(&["check", folder.path().join("absent").to_str().unwrap()], 1, &["absent"]);
     bad(&["check", folder.path().to_str().unwrap()], 1, &["holds no module"]);
 }

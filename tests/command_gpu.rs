@@ -1,4 +1,5 @@
 //! The commands that compute on a GPU: probe and render.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! The commands that look: list, show, graph, why, diff.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod support;
 
@@ -163,22 +164,30 @@ fn diff_lays_differences_to_choices() {
     assert!(text.text().contains("- cube_map_shadow_map  "), "{}", text.text());
 }
 
-/// Catches two choices that are laid to one.
+/// Catches choices that are laid to one another, and one above the place that hides the one at it.
 #[test]
 fn diff_tells_choices_apart() {
-    let other = r#"(module: "forward", fill: {"brdf": "microfacet", "lights": ["point", "directional"]})"#;
+    let other = r#"(
+        module: "forward",
+        fill: {"brdf": "microfacet", "lights": ["point", (module: "directional", fill: {"visibility": "perspective"})]},
+        freeze: {"double_sided": true},
+    )"#;
     let json = good(&["diff", MATTE, other, "--format", "json"]).json();
-    assert_eq!(strings(&json["choices"], "path"), ["main.brdf", "main.lights[1]"]);
-    let because = |name: &str| {
-        let added = json["functions"]["added"].as_array().expect("a list");
-        added
-            .iter()
-            .find(|item| item["name"] == name)
-            .unwrap_or_else(|| panic!("no {name} in {added:?}"))["because"]
-            .clone()
+    assert_eq!(
+        strings(&json["choices"], "path"),
+        ["main.double_sided", "main.brdf", "main.lights[1]"]
+    );
+    let because = |kind: &str, name: &str| {
+        let added = json[kind]["added"].as_array().expect("a list");
+        let item = added.iter().find(|item| item["name"] == name);
+        item.unwrap_or_else(|| panic!("no {name} in {added:?}"))["because"].clone()
     };
-    assert_eq!(because("ggx_distribution"), "main.brdf");
-    assert_eq!(because("directional_light"), "main.lights[1]");
+    assert_eq!(because("functions", "ggx_distribution"), "main.brdf");
+    assert_eq!(because("functions", "directional_light"), "main.lights[1]");
+    assert_eq!(because("bindings", "perspective_shadow_map"), "main.lights[1]");
+    assert_eq!(because("params", "perspective.bias"), "main.lights[1]");
+    // Named by the shadow map's views alone.
+    assert_eq!(because("structs", "View"), "main.lights[1]");
 }
 
 /// Catches a difference between a recipe and itself, and a function that only one of two BRDFs has and is not named.

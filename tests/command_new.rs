@@ -1,4 +1,5 @@
 //! `new`.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod support;
 
@@ -109,6 +110,34 @@ fn a_folder_is_all_that_a_module_needs() {
     wrong(&module, "half.wgsl:1:");
     code("fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {\n    return vec3f(0.0)\n}\n");
     wrong(&module, "half.wgsl:");
+}
+
+/// Catches folders of modules in the wrong order, a file list in JSON that names other files than were made, and a check of a module's
+/// neighbours instead of it.
+#[test]
+fn the_last_folder_counts() {
+    let folders = [tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder")];
+    for (folder, value) in folders.iter().zip(["0.125", "0.875"]) {
+        let json = good(&["new", "brdf", "mine", "--dir", folder.path().to_str().unwrap(), "--format", "json"]).json();
+        let made = json["files"].as_array().expect("a list");
+        assert!(
+            made.len() == 4 && made.iter().all(|file| Path::new(file.as_str().expect("a path")).is_file()),
+            "{made:?}"
+        );
+        let code = format!("fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {{\n    return vec3f({value});\n}}\n");
+        std::fs::write(folder.path().join("brdf/mine/mine.wgsl"), code).unwrap();
+    }
+    let [first, second] = folders.each_ref().map(|folder| folder.path().to_str().unwrap());
+    let recipe = r#"(module: "forward", fill: {"brdf": "mine", "lights": ["point"]})"#;
+    let emitted = |a: &str, b: &str| good(&["emit", recipe, "--modules", a, "--modules", b]).text().to_owned();
+    assert!(emitted(first, second).contains("vec3f(0.875)"));
+    assert!(emitted(second, first).contains("vec3f(0.125)"));
+    // A module's folder is that module; its category's folder and the whole are all modules in them.
+    good(&["new", "brdf", "other", "--dir", first]);
+    assert_eq!(good(&["check", &format!("{first}/brdf/mine")]).text(), "ok     module brdf/mine\n");
+    for path in [&format!("{first}/brdf"), first] {
+        assert_eq!(good(&["check", path]).text(), "ok     module brdf/mine\nok     module brdf/other\n");
+    }
 }
 
 /// `check` finds the module wrong at this place.

@@ -218,6 +218,50 @@ fn every_code_is_listed() {
     assert_eq!(listed.difference(&used).collect::<Vec<_>>(), Vec::<&String>::new(), "in no source");
 }
 
+/// Catches a field of the declarations that the specification does not explain.
+#[test]
+fn the_specification_knows_every_field() {
+    let catalog = Catalog::load(shadewright::modules::library()).unwrap_or_else(|report| panic!("{report}"));
+    let mut fields = BTreeSet::new();
+    let mut keys = |value: &Value| fields.extend(value.as_object().into_iter().flatten().map(|(key, _)| key.clone()));
+    for category in catalog.categories() {
+        keys(&serde_json::to_value(&category.manifest).expect("JSON"));
+    }
+    for module in catalog.modules() {
+        let manifest = serde_json::to_value(&module.manifest).expect("JSON");
+        keys(&manifest);
+        for group in ["slots", "params", "instances", "resources"] {
+            manifest[group].as_object().into_iter().flatten().for_each(|(_, item)| keys(item));
+        }
+    }
+    assert!(fields.len() >= 25, "{fields:?}");
+    let specification = read(&root().join("spec/modules.md"));
+    let missing: Vec<&String> = fields
+        .iter()
+        .filter(|field| !specification.contains(&format!("`{field}`")))
+        .collect();
+    assert!(missing.is_empty(), "spec/modules.md does not explain {missing:?}");
+}
+
+/// Catches links between the documents that lead nowhere.
+#[test]
+fn links_between_documents_lead_somewhere() {
+    let mut documents = files(&root().join("spec"), ".md");
+    documents.extend(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root().join(name)));
+    let mut wrong = Vec::new();
+    for document in documents {
+        let text = read(&document);
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        for link in links.filter(|link| !link.starts_with("http") && !link.starts_with('#')) {
+            let file = link.split('#').next().unwrap_or(link);
+            if !document.parent().expect("a folder").join(file).exists() {
+                wrong.push(format!("{}: {link}", document.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
 /// Catches a module's folder without its formula, its cases or its code.
 #[test]
 fn every_module_is_a_whole_folder() {

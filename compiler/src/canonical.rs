@@ -14,7 +14,7 @@ use crate::library::Library;
 use crate::link::link;
 use crate::manifest::{ModuleManifest, Node};
 use crate::parse::parse_whole;
-use crate::plan::{Roots, with_plan};
+use crate::plan::{Roots, plan, roomy};
 use crate::resolve::{Instances, Place, resolve_root};
 
 /// Hash of the canonical form of a complete WGSL text. Of a program's source form it is the program's hash.
@@ -46,7 +46,8 @@ fn canonical<T: Send>(name: &str, wgsl: &str, of: impl FnOnce(&naga::Module) -> 
     });
     let tree = resolve_root(&catalog, module, &Node::new(name), Place::new(&file))?;
     let instances = Instances::find(&catalog, &tree);
-    with_plan(&catalog, tree, instances, &Roots::Main, |plan| Ok(of(&link(&plan))))
+    let plan = plan(&catalog, tree, instances, &Roots::Main)?;
+    Ok(roomy(plan.deep, || of(&link(&plan)))?)
 }
 
 /// A manifest that declares nothing.

@@ -65,7 +65,7 @@ impl Catalog {
         node.fill.insert("subject".to_owned(), Filling::One(recipe.root.clone()));
         let tree = resolve_root(self, module, &node, place)?;
         let instances = Instances::find(self, &tree);
-        self.finish(tree, instances, &Roots::Main, PROBE)
+        self.finish(self.plan_tree(tree, instances, &Roots::Main, PROBE)?)
     }
 }
 

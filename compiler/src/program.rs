@@ -4,9 +4,10 @@ use std::sync::{Arc, OnceLock};
 
 use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
+use crate::hash::structural_hash;
 use crate::link::{link, write_source};
 use crate::manifest::{Node, PassDecl, parse_recipe};
-use crate::plan::{Plan, Roots, with_plan};
+use crate::plan::{Plan, Roots, plan, roomy};
 use crate::reflect::{Reflection, reflect};
 use crate::resolve::{Instances, Place, Tree, resolve, resolve_root};
 use crate::validate::{Validated, located, validate};
@@ -47,7 +48,7 @@ impl Program {
 
     /// Why a function, binding, parameter, override, struct or constant is there; empty if it is not.
     pub fn why(&self, name: &str) -> Vec<Why> {
-        why::why(&self.plan, &self.reflection, name)
+        why::why(&self.plan, &self.reflection, self.wgsl(), name)
     }
 
     /// The tree of the recipe as it was resolved, defaults included: a line a module with its slot path.
@@ -118,10 +119,18 @@ impl Catalog {
     /// # Errors
     /// Anything wrong with the recipe or with the modules it reaches.
     pub fn compile(&self, recipe: &Recipe, pass: &str) -> Result<Program, Report> {
+        self.finish(self.plan(recipe, pass)?)
+    }
+
+    /// The first half of [`Catalog::compile`]: everything that can be known before anything is written.
+    ///
+    /// # Errors
+    /// Anything wrong with the recipe or with the modules it reaches.
+    pub fn plan(&self, recipe: &Recipe, pass: &str) -> Result<LinkPlan, Report> {
         let tree = resolve(self, recipe)?;
         let instances = Instances::find(self, &tree);
         if pass == "main" {
-            return self.finish(tree, instances, &Roots::Main, pass);
+            return self.plan_tree(tree, instances, &Roots::Main, pass);
         }
         let found = pass.rsplit_once('.').and_then(|(name, own)| {
             let instance = instances.list.iter().position(|i| i.name == name)?;
@@ -134,7 +143,7 @@ impl Catalog {
                     instance,
                     entry: entry.clone(),
                 };
-                self.finish(tree, instances, &roots, pass)
+                self.plan_tree(tree, instances, &roots, pass)
             }
             Some((instance, own, PassDecl::Draw { root, inherit, .. })) => {
                 let node = &tree.nodes[instances.list[instance].node];
@@ -148,7 +157,7 @@ impl Catalog {
                 let module = self.module_at(&root.module, None, &place)?;
                 let tree = resolve_root(self, module, &root, place)?;
                 let instances = Instances::find(self, &tree);
-                self.finish(tree, instances, &Roots::Main, pass)
+                self.plan_tree(tree, instances, &Roots::Main, pass)
             }
             None => {
                 let mut known = vec!["main".to_owned()];
@@ -163,23 +172,67 @@ impl Catalog {
         }
     }
 
-    pub(crate) fn finish(&self, tree: Tree, instances: Instances, roots: &Roots, pass: &str) -> Result<Program, Report> {
-        with_plan(self, tree, instances, roots, |plan| {
+    pub(crate) fn plan_tree(&self, tree: Tree, instances: Instances, roots: &Roots, pass: &str) -> Result<LinkPlan, Report> {
+        let plan = plan(self, tree, instances, roots)?;
+        Ok(LinkPlan {
+            plan,
+            pass: pass.to_owned(),
+        })
+    }
+
+    /// The second half of [`Catalog::compile`]: links, validates and reflects.
+    ///
+    /// # Errors
+    /// The linked module does not pass naga's validator.
+    pub fn finish(&self, plan: LinkPlan) -> Result<Program, Report> {
+        let LinkPlan { plan, pass } = plan;
+        roomy(plan.deep, move || {
             let module = link(&plan);
-            let hash = crate::hash::structural_hash(&module);
+            let hash = structural_hash(&module);
             let validated = match validate(module) {
                 Ok(validated) => validated,
                 // The module is gone with the error: writing it again is for failures only.
                 Err(error) => return Err(located(&plan, &link(&plan), &error)),
             };
-            let reflection = reflect(self, &plan, &validated, hash, pass);
+            let reflection = reflect(self, &plan, &validated, hash, &pass);
+            // While there is room for it.
+            let wgsl = if plan.deep {
+                OnceLock::from(write_source(&plan))
+            } else {
+                OnceLock::new()
+            };
             Ok(Program {
                 validated,
                 reflection,
                 hash,
                 plan,
-                wgsl: OnceLock::new(),
+                wgsl,
             })
-        })
+        })?
+    }
+}
+
+/// What a pass will hold, under which names and bindings: the common ground of both written forms.
+#[derive(Debug)]
+pub struct LinkPlan {
+    plan: Plan,
+    pass: String,
+}
+
+impl LinkPlan {
+    /// Writes the plan as IR, which nobody has validated yet.
+    ///
+    /// # Errors
+    /// There is no thread for a plan that wants a large stack.
+    pub fn link(&self) -> Result<naga::Module, Report> {
+        Ok(roomy(self.plan.deep, || link(&self.plan))?)
+    }
+
+    /// Writes the plan as source.
+    ///
+    /// # Errors
+    /// As for [`LinkPlan::link`].
+    pub fn source(&self) -> Result<String, Report> {
+        Ok(roomy(self.plan.deep, || write_source(&self.plan))?)
     }
 }

@@ -1,6 +1,9 @@
 //! Why something is in a shader: who calls it, whose it is, and which line of RON brought that module in.
 
-use crate::plan::{Body, GROUPS, Plan};
+use crate::parse::Origin;
+use crate::parse::lex::lex;
+use crate::parse::scan::{Item, ItemKind};
+use crate::plan::{Body, GROUPS, Plan, joined};
 use crate::reflect::{ParamPlace, Reflection};
 
 /// Why something is in a shader.
@@ -21,7 +24,7 @@ pub struct Why {
 }
 
 /// Answers for every emitted thing of this name; a parameter is also found by its own name.
-pub fn why(plan: &Plan, reflection: &Reflection, name: &str) -> Vec<Why> {
+pub fn why(plan: &Plan, reflection: &Reflection, wgsl: &str, name: &str) -> Vec<Why> {
     let mut found = Vec::new();
     for (index, planned) in plan.functions.iter().enumerate() {
         if planned.name == name {
@@ -39,19 +42,22 @@ pub fn why(plan: &Plan, reflection: &Reflection, name: &str) -> Vec<Why> {
             ParamPlace::Override { name } => name,
             ParamPlace::Constant { .. } => &param.name,
         };
-        if emitted == name || param.name == name || format!("{}.{}", param.instance, param.name) == name {
-            if let Some(home) = plan.instances.list.iter().position(|i| i.name == param.instance) {
-                found.push(answer(
-                    plan,
-                    name,
-                    "parameter",
-                    home,
-                    user(plan, home, |e, unit| reads_param(e, unit, &param.name)),
-                ));
-            }
+        if (emitted == name || param.name == name || format!("{}.{}", param.instance, param.name) == name)
+            && let Some(home) = plan.instances.list.iter().position(|i| i.name == param.instance)
+        {
+            found.push(answer(
+                plan,
+                name,
+                "parameter",
+                home,
+                user(plan, home, |e, unit| reads_param(e, unit, &param.name)),
+            ));
         }
     }
-    if let Some(block) = plan.blocks.iter().find(|b| format!("{}_params", GROUPS[b.group as usize]) == name) {
+    if let Some(block) = plan.blocks.iter().find(|b| {
+        let group = GROUPS[b.group as usize];
+        format!("{group}_params") == name || joined(group, "Params") == name
+    }) {
         for member in &block.members {
             found.push(answer(
                 plan,
@@ -82,34 +88,49 @@ pub fn why(plan: &Plan, reflection: &Reflection, name: &str) -> Vec<Why> {
             plan.names
                 .iter()
                 .filter(|(_, emitted)| *emitted == name)
-                .filter_map(|((home, own), _)| item(plan, name, *home, own)),
+                .filter_map(|((home, own), _)| item(plan, wgsl, name, *home, own)),
         );
     }
     found
 }
 
-/// A struct or constant.
-fn item(plan: &Plan, name: &str, home: usize, own: &str) -> Option<Why> {
-    use crate::parse::scan::ItemKind;
+/// A struct or constant. The plan names more than the shader holds, so it must stand in the text.
+fn item(plan: &Plan, wgsl: &str, name: &str, home: usize, own: &str) -> Option<Why> {
+    if !lex(wgsl).iter().any(|token| &wgsl[token.range()] == name) {
+        return None;
+    }
     let unit = &plan.homes[home].unit;
-    let kind = match unit.scan.item(own)?.kind {
-        ItemKind::Struct => "struct",
-        ItemKind::Constant | ItemKind::Alias => "constant",
-        ItemKind::Override => "override",
+    let kind = match unit.scan.item(own).map(|item| item.kind) {
+        Some(ItemKind::Struct) => "struct",
+        Some(ItemKind::Constant | ItemKind::Alias) => "constant",
+        Some(ItemKind::Override) => "override",
+        None if unit.origin(own) == Some(&Origin::Instances) => "struct",
         _ => return None,
     };
-    // The first living function whose text names it, in its own unit or in one that knows the interface.
-    let user = plan.functions.iter().position(|p| {
-        let unit = &plan.homes[p.home].unit;
-        let knows = p.home == home || matches!(unit.origin(own), Some(crate::parse::Origin::Interface(_)));
-        let mentions = |item: &crate::parse::scan::Item| {
+    let knows = |h: usize| h == home || matches!(plan.homes[h].unit.origin(own), Some(Origin::Interface(_)));
+    let mentions = |h: usize, item: &str| {
+        let unit = &plan.homes[h].unit;
+        let words = |item: &Item| {
             item.references
                 .iter()
                 .any(|r| &unit.file.text[unit.scan.tokens[r.token].range()] == own)
         };
-        knows && unit.scan.item(p.source_name(&plan.homes)).is_some_and(mentions)
-    })?;
-    Some(answer(plan, name, kind, home, path_to(plan, user)))
+        knows(h) && unit.scan.item(item).is_some_and(words)
+    };
+    // The first function whose text names it; or the function that reads a variable of its type.
+    let by_function = plan.functions.iter().position(|p| mentions(p.home, p.source_name(&plan.homes)));
+    let by_variable = || {
+        let typed = plan.globals.iter().filter(|g| {
+            let global = &plan.homes[g.home].unit.ir.global_variables[g.handle];
+            let variable = global.name.as_deref().unwrap_or_default();
+            mentions(g.home, variable) || (g.home == home && own == "Instance" && variable == "instances")
+        });
+        typed
+            .flat_map(|g| (0..plan.functions.len()).find(|&f| reads_global(plan, f, g.home, g.handle)))
+            .next()
+    };
+    let path = by_function.or_else(by_variable).map_or_else(Vec::new, |user| path_to(plan, user));
+    Some(answer(plan, name, kind, home, path))
 }
 
 fn answer(plan: &Plan, name: &str, kind: &str, home: usize, path: Vec<String>) -> Why {

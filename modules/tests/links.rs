@@ -52,11 +52,13 @@ fn nothing_more_than_needed() {
     assert_eq!(inputs, [0, 1], "position and normal only");
 }
 
-/// Catches a constant that does not prune its branch.
+/// Catches a constant that does not prune its branch, or one that does not reach it.
 #[test]
 fn double_sided() {
-    let program = compile(r#"(module: "forward", freeze: {"double_sided": true})"#, "main");
-    assert!(program.wgsl().contains("front_facing"));
+    for sides in [true, false] {
+        let recipe = format!(r#"(module: "forward", freeze: {{"double_sided": {sides}}}, fill: {{"lights": ["point"]}})"#);
+        assert_eq!(compile(&recipe, "main").wgsl().contains("front_facing"), sides);
+    }
 }
 
 #[test]

@@ -1,4 +1,18 @@
 //! Executes linked shaders with wgpu, in physical units.
+//!
+//! ```text
+//! scene file -> the smallest recipes that draw it -> programs -> pipelines -> passes -> HDR frame -> display image
+//! (scene)       (scene)                              (frame)     (gpu)        (frame)   (frame)      (image)
+//! ```
+//!
+//! - [`gpu`]: a device of its own or the caller's, typed errors, pipelines by canonical hash, buffers packed by reflection, probes.
+//! - [`frame`]: a frame described by meshes, materials and lights, drawn. Shadow maps and compute passes come from what the
+//!   modules declare.
+//! - [`scene`]: scene files and glTF, and the recipes derived from them.
+//! - [`mesh`], [`image`]: triangles and pictures.
+//!
+//! Colours are linear Rec.709 in cd/m2 per channel, lengths in metres, right-handed with y up. The runtime knows no module by
+//! name, owns no window and prints nothing.
 
 pub mod frame;
 pub mod gpu;

@@ -8,8 +8,10 @@ use glam::{Mat4, Vec3};
 use indexmap::IndexMap;
 use shadewright_compiler::manifest::{Filling, Node, Value};
 use shadewright_compiler::{Catalog, Recipe};
+use shadewright_modules::{Folder, Overlay};
 use shadewright_runtime::frame::{Bounds, Camera, Draw, Frame, Lights, Material, Mesh, Renderer, Settings, Texture};
 use shadewright_runtime::gpu::Gpu;
+use shadewright_runtime::scene::SceneFile;
 
 static GPU: LazyLock<Gpu> = LazyLock::new(|| Gpu::headless().unwrap());
 static CATALOG: LazyLock<Arc<Catalog>> = LazyLock::new(|| Arc::new(Catalog::load(shadewright_modules::library()).unwrap()));
@@ -90,7 +92,11 @@ fn frame(material: Material, lights: Vec<Lights>, draws: Vec<Draw>) -> Frame {
 }
 
 fn hdr(frame: &Frame) -> Vec<[f32; 4]> {
-    let mut renderer = Renderer::new(&GPU, Arc::clone(&CATALOG));
+    hdr_with(&CATALOG, frame)
+}
+
+fn hdr_with(catalog: &Arc<Catalog>, frame: &Frame) -> Vec<[f32; 4]> {
+    let mut renderer = Renderer::new(&GPU, Arc::clone(catalog));
     let image = renderer.render(frame).unwrap().read_hdr(&GPU).unwrap();
     assert!(image.iter().flatten().all(|v| v.is_finite()), "NaN or infinite");
     image
@@ -145,6 +151,22 @@ fn lambert_plane_under_a_point_light_is_the_closed_form() {
             }
         }
     }
+}
+
+/// Catches normals that are carried by the model matrix itself: a stretched object is not lit by its stretched normal.
+#[test]
+fn normals_of_a_stretched_object_are_perpendicular_to_it() {
+    let material = material(r#"(module: "forward", fill: {"brdf": "lambert", "lights": ["directional"]})"#);
+    let lights = lights(&material, vec![vec![sun(Vec3::NEG_Y, 100.0)]]);
+    let model = Mat4::from_scale(Vec3::new(1.0, 3.0, 1.0)) * Mat4::from_rotation_z(0.5);
+    let normal = model.transform_vector3(Vec3::Z).cross(model.transform_vector3(Vec3::X)).normalize();
+    let tilted = Draw {
+        model,
+        ..draw(&square(2.0), Vec3::ZERO)
+    };
+    let found = texel(&hdr(&frame(material, lights, vec![tilted])), 0.1, 0.1)[0];
+    let expected = 0.8 / std::f32::consts::PI * 100.0 * normal.y;
+    assert!((found / expected - 1.0).abs() < 1e-4, "{found}, not {expected}");
 }
 
 /// Share of a square tile's edge distance at which a ground point's ray toward a light passes the tile's plane: below 1 it hits.
@@ -206,6 +228,40 @@ fn shadows_fall_where_geometry_says() {
     }
 }
 
+/// Catches two kinds of lights that share a shadow map because their visibility modules are equal: index 0 of one would
+/// look into the views of the other. The second kind is a copy of the first under another name, found by its folder alone.
+#[test]
+fn equal_visibility_below_two_kinds_of_light_has_a_map_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let bulb = folder.path().join("light/bulb");
+    std::fs::create_dir_all(&bulb).unwrap();
+    for (from, to) in [("module.ron", "module.ron"), ("point.wgsl", "bulb.wgsl")] {
+        let text = shadewright_modules::library()
+            .read(&format!("light/point/{from}"))
+            .unwrap()
+            .unwrap();
+        std::fs::write(bulb.join(to), text).unwrap();
+    }
+    let library = Overlay(vec![Arc::new(Folder::new(folder.path())), shadewright_modules::library()]);
+    let catalog = Arc::new(Catalog::load(Arc::new(library)).unwrap());
+    let material = material(
+        r#"(module: "forward", fill: {"brdf": "lambert", "lights": [
+            (module: "point", fill: {"visibility": "cube-map"}), (module: "bulb", fill: {"visibility": "cube-map"}),
+        ]})"#,
+    );
+    let (lamp, bulb) = (Vec3::new(0.0, 3.0, 0.0), Vec3::new(3.0, 3.0, 0.0));
+    let lights = lights(&material, vec![vec![point(lamp, 900.0)], vec![point(bulb, 500.0)]]);
+    let tile = draw(&square(0.5), Vec3::new(1.0, 1.5, 0.0));
+    let image = hdr_with(&catalog, &frame(material, lights, vec![draw(&square(6.0), Vec3::ZERO), tile]));
+    let lux = |from: Vec3, cd: f32, at: Vec3| cd * from.y / (from - at).length().powi(3);
+    for (column, lit_by_lamp, lit_by_bulb) in [(48, false, true), (24, true, false), (10, true, true)] {
+        let ground = place(column, 32);
+        let sum = f32::from(u8::from(lit_by_lamp)) * lux(lamp, 900.0, ground) + f32::from(u8::from(lit_by_bulb)) * lux(bulb, 500.0, ground);
+        let (found, expected) = (image[(32 * SIDE + column) as usize][0], 0.8 / std::f32::consts::PI * sum);
+        assert!((found / expected - 1.0).abs() < 1e-3, "{ground}: {found}, not {expected}");
+    }
+}
+
 /// Catches an exposure that reads nothing or another buffer than its passes wrote, and an image that is encoded twice.
 #[test]
 fn log_average_exposes_the_mean_to_the_key() {
@@ -253,6 +309,30 @@ fn textures_belong_to_their_place() {
     // These texels lie a 32nd of a texture's texel beside its centre, so the other half shows a little.
     assert!((top[0] - 2.0).abs() < 0.04 && top[1] < 0.04, "{top:?}");
     assert!((bottom[1] - 2.0 * 0.502_886_5).abs() < 0.04 && bottom[0] < 0.04, "{bottom:?}");
+}
+
+/// Catches an example that does not draw, and NaN or infinity in what it draws.
+#[test]
+fn examples_draw() {
+    let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/scenes");
+    let mut drawn = 0;
+    for entry in std::fs::read_dir(scenes).unwrap() {
+        let path = entry.unwrap().path();
+        if path.to_str().is_some_and(|p| p.ends_with(".scene.ron")) {
+            let scene = SceneFile::read(&path).unwrap_or_else(|e| panic!("{e}"));
+            let frame = scene.frame(&CATALOG, Some([96, 64])).unwrap_or_else(|e| panic!("{e}"));
+            let mut renderer = Renderer::new(&GPU, Arc::clone(&CATALOG));
+            let targets = renderer.render(&frame).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+            let image = targets.read_hdr(&GPU).unwrap();
+            assert!(image.iter().flatten().all(|v| v.is_finite()), "{}: NaN or infinite", path.display());
+            let lit = image.iter().filter(|t| t[..3].iter().any(|c| *c > 0.0)).count();
+            assert!(lit > image.len() / 10, "{}: {lit} lit texels", path.display());
+            let display = targets.read_display(&GPU).unwrap().unwrap();
+            assert!(display.chunks(4).any(|t| t[1] > 64), "{}: dark", path.display());
+            drawn += 1;
+        }
+    }
+    assert!(drawn > 0);
 }
 
 /// Catches lights that are linked without being given, which would read an empty buffer.

@@ -109,14 +109,13 @@ impl Side {
         })
     }
 
-    /// The choice to which something of this shader is owed: the deepest one above the place of the thing itself,
-    /// or else of the nearest of its callers. All is owed to an only choice.
+    /// The choice to which something of this shader is owed: the deepest one above the function that needs it,
+    /// or else above the nearest of its callers. All is owed to an only choice.
     fn because(&self, name: &str, choices: &[Choice]) -> Option<String> {
         if let [only] = choices {
             return Some(only.path.clone());
         }
         let reasons = self.program.why(name);
-        let own = reasons.iter().find_map(|reason| above(&reason.place, choices));
         let reflection = self.program.reflection();
         let places_of = |function: &String| -> Vec<&String> {
             let origin = reflection.functions.iter().find(|origin| origin.name == *function);
@@ -124,11 +123,9 @@ impl Side {
             let instance = reflection.instances.iter().find(|known| Some(&known.name) == instance);
             instance.map(|instance| instance.paths.iter().collect()).unwrap_or_default()
         };
-        let of_callers = || {
-            let callers = reasons.iter().flat_map(|reason| reason.path.iter().rev());
-            callers.flat_map(places_of).find_map(|place| above(place, choices))
-        };
-        own.or_else(of_callers).or_else(|| {
+        let callers = reasons.iter().flat_map(|reason| reason.path.iter().rev());
+        let of_callers = callers.flat_map(places_of).find_map(|place| above(place, choices));
+        of_callers.or_else(|| {
             // A struct that only a binding's type names.
             let binding = reflection
                 .bindings

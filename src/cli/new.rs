@@ -87,7 +87,7 @@ fn make(root: &Path, folder: &Path, files: &[(String, String)]) -> std::io::Resu
 fn declaration(category: &Category, name: &str) -> String {
     let summary = category.manifest.summary.replace('"', "'");
     format!(
-        r#"// The module `{name}`. What may stand here is in spec/module.md; a field that is not known is an error.
+        r#"// The module `{name}`. What may stand here is in spec/modules.md; a field that is not known is an error.
 (
     // One line: what it computes.
     summary: "Neutral: {summary}",

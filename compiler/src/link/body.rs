@@ -269,10 +269,10 @@ impl Linker<'_> {
     fn member_index(&mut self, clone: &Clone, base: Handle<Expression>, index: u32) -> u32 {
         let plan = self.plan;
         let unit = &plan.homes[clone.home].unit;
-        if let Expression::GlobalVariable(global) = clone.source.expressions[base] {
-            if is_params(unit, global) {
-                return self.block_member(clone.home, index).map_or(index, |(_, member)| member);
-            }
+        if let Expression::GlobalVariable(global) = clone.source.expressions[base]
+            && is_params(unit, global)
+        {
+            return self.block_member(clone.home, index).map_or(index, |(_, member)| member);
         }
         match struct_of(clone.home, &plan.structs, clone.info, &unit.ir, base) {
             Some(id) if !plan.structs.list[id].fixed => plan.structs.new_index(id, index),

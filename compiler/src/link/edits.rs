@@ -56,10 +56,11 @@ impl Dead<'_> {
             last = Some((statement, span));
         }
         // What stands behind a branch that is always taken and leaves.
-        if let Some((statement @ Statement::If { .. }, span)) = last {
-            if count < block.len() && leaves(ir, function, statement) {
-                self.rest_of_block(span);
-            }
+        if let Some((statement @ Statement::If { .. }, span)) = last
+            && count < block.len()
+            && leaves(ir, function, statement)
+        {
+            self.rest_of_block(span);
         }
     }
 
@@ -86,10 +87,10 @@ impl Dead<'_> {
             }
             Statement::Store { pointer, .. } => {
                 let Some(info) = self.planned.info(&self.plan.homes) else { return };
-                if is_dead_store(self.planned.home, &self.plan.structs, function, info, &unit.ir, *pointer) {
-                    if let Some(first) = self.token_at(span) {
-                        self.remove_statement(first);
-                    }
+                if is_dead_store(self.planned.home, &self.plan.structs, function, info, &unit.ir, *pointer)
+                    && let Some(first) = self.token_at(span)
+                {
+                    self.remove_statement(first);
                 }
             }
             Statement::Call {

@@ -1,6 +1,6 @@
 //! Writing a plan as IR, by cloning the units' functions and patching what they refer to.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use naga::proc::Layouter;
 use naga::{Constant, EntryPoint, Expression, GlobalVariable, Handle, Module, Override, ResourceBinding, Span, Type};

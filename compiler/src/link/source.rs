@@ -1,6 +1,7 @@
 //! Writing a plan as source: the authors' own text, only what is reached, with linked names and bindings.
 
-use std::collections::{BTreeSet, HashMap, VecDeque};
+use rustc_hash::FxHashMap as HashMap;
+use std::collections::{BTreeSet, VecDeque};
 use std::fmt::Write as _;
 use std::ops::Range;
 
@@ -16,7 +17,7 @@ pub fn write_source(plan: &Plan) -> String {
         plan,
         wanted: BTreeSet::new(),
         queue: VecDeque::new(),
-        params: HashMap::new(),
+        params: HashMap::default(),
     };
     for (number, block) in plan.blocks.iter().enumerate() {
         for member in &block.members {
@@ -51,7 +52,7 @@ impl Writer<'_> {
                 self.want(global.home, name);
             }
         }
-        let mut items: HashMap<(usize, String), (ItemKind, String)> = HashMap::new();
+        let mut items: HashMap<(usize, String), (ItemKind, String)> = HashMap::default();
         while let Some((home, name)) = self.queue.pop_front() {
             if let Some(written) = self.item(home, &name) {
                 items.insert((home, name), written);
@@ -66,11 +67,11 @@ impl Writer<'_> {
         ] {
             for home in self.homes_in_order() {
                 for name in self.names_in_order(home) {
-                    if let Some((kind, text)) = items.get(&(home, name)) {
-                        if kinds.contains(kind) {
-                            self.gap(&mut out, *kind);
-                            out.push_str(text);
-                        }
+                    if let Some((kind, text)) = items.get(&(home, name))
+                        && kinds.contains(kind)
+                    {
+                        self.gap(&mut out, *kind);
+                        out.push_str(text);
                     }
                 }
             }
@@ -205,10 +206,10 @@ impl Writer<'_> {
                     let key = (plan.homes[home].first, name);
                     self.dead_members(key, home, item, &mut edits);
                 }
-                if item.kind == ItemKind::Variable {
-                    if let Some(binding) = self.binding(home, name) {
-                        edits.push((item.span.start..item.span.start, binding));
-                    }
+                if item.kind == ItemKind::Variable
+                    && let Some(binding) = self.binding(home, name)
+                {
+                    edits.push((item.span.start..item.span.start, binding));
                 }
                 let mut text = apply(&unit.file.text, item.doc_start..item.span.end, edits);
                 text.push('\n');
@@ -332,10 +333,10 @@ impl Writer<'_> {
         let scan = crate::parse::lex::lex(header);
         let words: Vec<String> = scan.iter().map(|t| header[t.range()].to_owned()).collect();
         for word in words {
-            if let Some(Origin::Interface(category)) = self.plan.homes[home].unit.origin(&word) {
-                if let Some(declared) = self.plan.interface_home(category) {
-                    self.want(declared, &word);
-                }
+            if let Some(Origin::Interface(category)) = self.plan.homes[home].unit.origin(&word)
+                && let Some(declared) = self.plan.interface_home(category)
+            {
+                self.want(declared, &word);
             }
         }
     }
@@ -347,7 +348,7 @@ impl Writer<'_> {
         let text = &unit.file.text;
         let is_dead = |start: usize| function.is_some_and(|(_, dead)| dead.iter().any(|r| r.contains(&start)));
         let mut edits = Vec::new();
-        let mut params: HashMap<usize, (&str, Range<usize>)> = HashMap::new();
+        let mut params: HashMap<usize, (&str, Range<usize>)> = HashMap::default();
         for (name, range) in param_uses(text, &unit.scan) {
             params.insert(range.start, (name, range));
         }
@@ -363,10 +364,10 @@ impl Writer<'_> {
                 }
                 continue;
             }
-            if let Some(new) = self.target(home, name, function.map(|(p, _)| p)) {
-                if new != name {
-                    edits.push((token.range(), new));
-                }
+            if let Some(new) = self.target(home, name, function.map(|(p, _)| p))
+                && new != name
+            {
+                edits.push((token.range(), new));
             }
         }
         edits
@@ -433,7 +434,7 @@ fn whole_lines(text: &str, range: Range<usize>) -> Range<usize> {
 
 /// The text of a range with the edits made. Edits inside a removed stretch go with it.
 fn apply(text: &str, range: Range<usize>, mut edits: Vec<Edit>) -> String {
-    edits.sort_by(|(a, _), (b, _)| (a.start, std::cmp::Reverse(a.end)).cmp(&(b.start, std::cmp::Reverse(b.end))));
+    edits.sort_by_key(|(a, _)| (a.start, std::cmp::Reverse(a.end)));
     let mut out = String::with_capacity(range.len());
     let mut at = range.start;
     for (span, new) in edits {

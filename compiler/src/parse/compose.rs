@@ -3,7 +3,7 @@
 //! What a module names but does not declare (its interface's structs, the functions of its slots, its parameters) is
 //! appended after its own text, so that every line of the author stays where it is. WGSL does not care for order.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 use std::fmt::Write as _;
 use std::ops::Range;
 use std::sync::Arc;
@@ -191,7 +191,7 @@ pub fn compose(
     let mut out = Composed {
         text: author.text.clone(),
         own,
-        names: HashMap::new(),
+        names: HashMap::default(),
         segments: Vec::new(),
     };
     out.segments.push(Segment {

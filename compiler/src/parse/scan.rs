@@ -4,8 +4,9 @@
 //! where each item stands and which of its words refer to module-scope names, so that the authors' own text can be
 //! linked. Of text that naga refuses it may say anything, but never panics.
 
-use std::collections::{HashMap, HashSet};
 use std::ops::Range;
+
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::lex::{Kind, Token, lex};
 
@@ -122,7 +123,7 @@ pub fn scan(text: &str) -> Scan {
         }
         at = end;
     }
-    let mut by_name = HashMap::with_capacity(items.len());
+    let mut by_name = HashMap::default();
     for (index, item) in items.iter().enumerate().filter(|(_, i)| !i.name.is_empty()) {
         by_name.entry(item.name.clone()).or_insert(index);
     }
@@ -209,7 +210,7 @@ fn scan_item(text: &str, tokens: &[Token], range: Range<usize>) -> Option<Item> 
         span,
         tokens: range.clone(),
         references: Vec::new(),
-        locals: HashSet::new(),
+        locals: HashSet::default(),
         fields: Vec::new(),
         result: 0..0,
         body: 0..0,
@@ -454,15 +455,15 @@ impl Walker<'_> {
 
     fn push(&mut self) {
         if let Some(locals) = &mut self.locals {
-            locals.scopes.push(HashSet::new());
+            locals.scopes.push(HashSet::default());
         }
     }
 
     fn pop(&mut self) {
-        if let Some(locals) = &mut self.locals {
-            if locals.scopes.len() > 1 {
-                locals.scopes.pop();
-            }
+        if let Some(locals) = &mut self.locals
+            && locals.scopes.len() > 1
+        {
+            locals.scopes.pop();
         }
     }
 

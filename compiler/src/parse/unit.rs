@@ -1,6 +1,6 @@
 //! One text, parsed and checked alone.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -47,6 +47,10 @@ pub struct Unit {
     pub structs: HashMap<Handle<naga::Type>, StructKey>,
     /// Structs whose layout a host or the language sees: never trimmed.
     pub fixed_structs: HashSet<StructKey>,
+    /// Words that linked names must not be: locals, and words of the language that the text uses.
+    pub words: HashSet<String>,
+    /// Results of calls and other statements, with their places: by function handle, then by entry point.
+    pub results: Vec<Vec<(Handle<naga::Expression>, Range<usize>)>>,
     /// Deepest nesting of blocks, longest chain of calls: how deep a walk over it may recurse.
     pub depth: (usize, usize),
 }
@@ -96,7 +100,9 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     let functions: HashMap<_, _> = ir.functions.iter().filter_map(|(h, f)| Some((f.name.clone()?, h))).collect();
     let structs = named_structs(&ir, &composed);
     let mut unit = Unit {
-        fixed_structs: HashSet::new(),
+        fixed_structs: HashSet::default(),
+        words: HashSet::default(),
+        results: Vec::new(),
         dependent: Vec::new(),
         depth: depth(&ir),
         file,
@@ -111,6 +117,14 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     };
     unit.fixed_structs = fixed_structs(&unit);
     unit.dependent = dependents(&unit);
+    unit.words = words(&unit);
+    let functions = unit
+        .ir
+        .functions
+        .iter()
+        .map(|(_, f)| f)
+        .chain(unit.ir.entry_points.iter().map(|e| &e.function));
+    unit.results = functions.map(results).collect();
     Ok(unit)
 }
 
@@ -299,8 +313,38 @@ pub fn chain(error: &dyn std::error::Error) -> String {
     text
 }
 
+fn words(unit: &Unit) -> HashSet<String> {
+    let mut words = HashSet::default();
+    for item in &unit.scan.items {
+        words.extend(item.locals.iter().cloned());
+        let text = &unit.file.text;
+        let mentioned = item.references.iter().map(|r| &text[unit.scan.tokens[r.token].range()]);
+        words.extend(mentioned.filter(|w| unit.origin(w).is_none()).map(str::to_owned));
+    }
+    words
+}
+
+fn results(function: &naga::Function) -> Vec<(Handle<naga::Expression>, Range<usize>)> {
+    use naga::Expression as E;
+    let is_result = |e: &E| {
+        matches!(
+            e,
+            E::CallResult(_)
+                | E::AtomicResult { .. }
+                | E::WorkGroupUniformLoadResult { .. }
+                | E::RayQueryProceedResult
+                | E::SubgroupBallotResult
+                | E::SubgroupOperationResult { .. }
+        )
+    };
+    let found = function.expressions.iter().filter(|(_, e)| is_result(e));
+    found
+        .map(|(h, _)| (h, function.expressions.get_span(h).to_range().unwrap_or_default()))
+        .collect()
+}
+
 fn named_structs(ir: &naga::Module, composed: &Composed) -> HashMap<Handle<naga::Type>, StructKey> {
-    let mut structs = HashMap::new();
+    let mut structs = HashMap::default();
     for (handle, ty) in ir.types.iter() {
         let (TypeInner::Struct { .. }, Some(name)) = (&ty.inner, &ty.name) else {
             continue;
@@ -323,7 +367,7 @@ fn named_structs(ir: &naga::Module, composed: &Composed) -> HashMap<Handle<naga:
 }
 
 fn fixed_structs(unit: &Unit) -> HashSet<StructKey> {
-    let mut fixed = HashSet::new();
+    let mut fixed = HashSet::default();
     let shared = unit
         .ir
         .global_variables

@@ -1,6 +1,6 @@
 //! Bindings and uniform blocks, numbered over the whole tree.
 
-use std::collections::HashSet;
+use rustc_hash::FxHashSet as HashSet;
 
 use naga::{AddressSpace, Expression, GlobalVariable, Handle};
 
@@ -102,7 +102,7 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
 
 /// Variables that live expressions name, by the home that declares them.
 fn reached(plan: &Plan) -> HashSet<(usize, Handle<GlobalVariable>)> {
-    let mut reached = HashSet::new();
+    let mut reached = HashSet::default();
     for planned in &plan.functions {
         let Some(function) = planned.ir(&plan.homes) else { continue };
         for (handle, expression) in function.expressions.iter() {

@@ -3,11 +3,13 @@
 //! A store into a member that nobody reads is dead, and so is what only it needed; a vertex stage's outputs are alive
 //! where the fragment stage reads them. The analysis starts with no member alive and repeats until nothing is added.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use std::ops::Range;
 
 use naga::{Binding, Block, Expression, Handle, ShaderStage, Statement, Type, TypeInner};
 
-use super::{Body, Choice, Home, Plan, Planned, Structs, choice, pure::can_go, reachable};
+use super::operands::{expression_operands, operands};
+use super::{Body, Choice, Home, Plan, Planned, Structs, can_go, choice, is_dead_store, reachable, struct_of};
 
 /// Finds out what is alive and writes it into the plan.
 pub fn analyse(plan: &mut Plan) {
@@ -96,14 +98,14 @@ fn living_calls(plan: &Plan, planned: &Planned, function: &naga::Function, block
 fn settle(plan: &mut Plan) {
     loop {
         let mut changed = false;
-        // Callers first: a function is looked at once something alive calls it.
+        // Callers first: callees precede them, so whatever a living call reaches is looked at in the same round.
         for index in (0..plan.functions.len()).rev() {
             if !plan.functions[index].needed {
                 continue;
             }
             if plan.functions[index].ir(&plan.homes).is_none() {
                 for target in plan.functions[index].targets.clone() {
-                    changed |= !std::mem::replace(&mut plan.functions[target].needed, true);
+                    plan.functions[target].needed = true;
                 }
             }
             let Some(function) = plan.functions[index].ir(&plan.homes) else {
@@ -116,9 +118,10 @@ fn settle(plan: &mut Plan) {
                 homes: &plan.homes,
                 functions: &plan.functions,
                 planned: &plan.functions[index],
-                pure_calls: HashMap::new(),
+                pure_calls: HashMap::default(),
                 called: Vec::new(),
                 function,
+                results: plan.functions[index].results(&plan.homes),
                 info,
                 structs: &mut plan.structs,
                 params: &mut plan.live_params,
@@ -133,7 +136,7 @@ fn settle(plan: &mut Plan) {
             let (live, called) = (walker.live, walker.called);
             plan.functions[index].live = live;
             for callee in called {
-                changed |= !std::mem::replace(&mut plan.functions[callee].needed, true);
+                plan.functions[callee].needed = true;
             }
         }
         changed |= link_stages(plan);
@@ -145,7 +148,7 @@ fn settle(plan: &mut Plan) {
 
 /// Vertex outputs are alive where a fragment entry point of the plan reads their location.
 fn link_stages(plan: &mut Plan) -> bool {
-    let mut wanted = HashSet::new();
+    let mut wanted = HashSet::default();
     let mut outputs = Vec::new();
     let mut changed = false;
     for planned in &plan.functions {
@@ -190,7 +193,7 @@ fn bound_members(plan: &Plan, home: usize, ty: Handle<Type>) -> Vec<(usize, u32,
 
 /// WGSL has no empty structs: one that is used keeps a member, a built-in value rather than a location.
 fn keep_one_member(plan: &mut Plan) -> bool {
-    let mut used = HashSet::new();
+    let mut used = HashSet::default();
     for planned in plan.functions.iter().filter(|f| f.needed) {
         let unit = &plan.homes[planned.home].unit;
         let Some(function) = planned.ir(&plan.homes) else { continue };
@@ -231,15 +234,19 @@ fn used_structs(structs: &Structs, ir: &naga::Module, home: usize, ty: Handle<Ty
     }
 }
 
+/// Callee and arguments of a call that can go.
+type PureCall<'a> = (Handle<naga::Function>, &'a [Handle<Expression>]);
+
 struct Walker<'a> {
     homes: &'a [Home],
     functions: &'a [Planned],
     planned: &'a Planned,
     /// Calls of pure functions by their result: they are alive where that is.
-    pure_calls: HashMap<Handle<Expression>, (Handle<naga::Function>, &'a [Handle<Expression>])>,
+    pure_calls: HashMap<Handle<Expression>, PureCall<'a>>,
     /// Functions that living calls reach.
     called: Vec<usize>,
     function: &'a naga::Function,
+    results: &'a [(Handle<Expression>, Range<usize>)],
     info: &'a naga::valid::FunctionInfo,
     structs: &'a mut Structs,
     params: &'a mut HashSet<(usize, u32)>,
@@ -263,20 +270,16 @@ impl<'a> Walker<'a> {
 
     /// Whether the text of an expression holds a call that cannot go, an atomic operation or the like.
     fn holds_action(&self, handle: Handle<Expression>) -> bool {
-        let span = self.function.expressions.get_span(handle).to_range().unwrap_or_default();
-        self.function.expressions.iter().take(handle.index() + 1).any(|(h, e)| {
-            let inside = || {
-                self.function
-                    .expressions
-                    .get_span(h)
-                    .to_range()
-                    .is_some_and(|s| span.start <= s.start && s.end <= span.end)
-            };
-            let acts = match e {
-                Expression::CallResult(callee) => !self.can_go(*callee),
-                other => is_result(other),
-            };
-            acts && inside()
+        let Some(span) = self.function.expressions.get_span(handle).to_range() else {
+            return false;
+        };
+        self.results.iter().any(|(result, place)| {
+            let inside = result.index() <= handle.index() && span.start <= place.start && place.end <= span.end;
+            inside
+                && match self.function.expressions[*result] {
+                    Expression::CallResult(callee) => !self.can_go(callee),
+                    _ => true,
+                }
         })
     }
 
@@ -413,10 +416,11 @@ impl<'a> Walker<'a> {
         match expression {
             Expression::AccessIndex { base, index } => {
                 let unit = &self.homes[home].unit;
-                if let Expression::GlobalVariable(global) = self.function.expressions[*base] {
-                    if super::bindings::is_params(unit, global) && self.params.insert((home, *index)) {
-                        self.changed = true;
-                    }
+                if let Expression::GlobalVariable(global) = self.function.expressions[*base]
+                    && super::bindings::is_params(unit, global)
+                    && self.params.insert((home, *index))
+                {
+                    self.changed = true;
                 }
                 if let Some(id) = struct_of(home, self.structs, self.info, &unit.ir, *base) {
                     self.changed |= self.structs.enliven(id, *index);
@@ -445,214 +449,5 @@ impl<'a> Walker<'a> {
             }
             other => expression_operands(other, &mut |h| self.stack.push(h)),
         }
-    }
-}
-
-/// Whether a store writes a member that nobody reads.
-pub fn is_dead_store(
-    home: usize,
-    structs: &Structs,
-    function: &naga::Function,
-    info: &naga::valid::FunctionInfo,
-    ir: &naga::Module,
-    mut pointer: Handle<Expression>,
-) -> bool {
-    loop {
-        match function.expressions[pointer] {
-            Expression::AccessIndex { base, index } => {
-                if struct_of(home, structs, info, ir, base).is_some_and(|id| !structs.is_live(id, index)) {
-                    return true;
-                }
-                pointer = base;
-            }
-            Expression::Access { base, .. } => pointer = base,
-            _ => return false,
-        }
-    }
-}
-
-/// The struct that an expression is, or points to.
-pub fn struct_of(
-    home: usize,
-    structs: &Structs,
-    info: &naga::valid::FunctionInfo,
-    ir: &naga::Module,
-    handle: Handle<Expression>,
-) -> Option<usize> {
-    let resolution = &info[handle].ty;
-    let ty = match *resolution.inner_with(&ir.types) {
-        TypeInner::Pointer { base, .. } => base,
-        TypeInner::Struct { .. } => resolution.handle()?,
-        _ => return None,
-    };
-    structs.id(home, ty)
-}
-
-/// Whether an expression is the result of a statement.
-fn is_result(expression: &Expression) -> bool {
-    matches!(
-        expression,
-        Expression::CallResult(_)
-            | Expression::AtomicResult { .. }
-            | Expression::WorkGroupUniformLoadResult { .. }
-            | Expression::RayQueryProceedResult
-            | Expression::SubgroupBallotResult
-            | Expression::SubgroupOperationResult { .. }
-    )
-}
-
-/// Operands of an expression.
-pub fn expression_operands(expression: &Expression, visit: &mut dyn FnMut(Handle<Expression>)) {
-    match expression {
-        Expression::Literal(_)
-        | Expression::Constant(_)
-        | Expression::Override(_)
-        | Expression::ZeroValue(_)
-        | Expression::FunctionArgument(_)
-        | Expression::GlobalVariable(_)
-        | Expression::LocalVariable(_)
-        | Expression::CallResult(_)
-        | Expression::AtomicResult { .. }
-        | Expression::WorkGroupUniformLoadResult { .. }
-        | Expression::RayQueryProceedResult
-        | Expression::SubgroupBallotResult
-        | Expression::SubgroupOperationResult { .. } => {}
-        Expression::Compose { components, .. } => components.iter().for_each(|&c| visit(c)),
-        Expression::Access { base, index } => {
-            visit(*base);
-            visit(*index);
-        }
-        Expression::AccessIndex { base, .. } => visit(*base),
-        Expression::Splat { value, .. } => visit(*value),
-        Expression::Swizzle { vector, .. } => visit(*vector),
-        Expression::Load { pointer } => visit(*pointer),
-        Expression::ImageSample {
-            image,
-            sampler,
-            coordinate,
-            array_index,
-            offset,
-            level,
-            depth_ref,
-            gather: _,
-            clamp_to_edge: _,
-        } => {
-            visit(*image);
-            visit(*sampler);
-            visit(*coordinate);
-            array_index.iter().chain(offset).chain(depth_ref).for_each(|&h| visit(h));
-            match level {
-                naga::SampleLevel::Auto | naga::SampleLevel::Zero => {}
-                naga::SampleLevel::Exact(h) | naga::SampleLevel::Bias(h) => visit(*h),
-                naga::SampleLevel::Gradient { x, y } => {
-                    visit(*x);
-                    visit(*y);
-                }
-            }
-        }
-        Expression::ImageLoad {
-            image,
-            coordinate,
-            array_index,
-            sample,
-            level,
-        } => {
-            visit(*image);
-            visit(*coordinate);
-            array_index.iter().chain(sample).chain(level).for_each(|&h| visit(h));
-        }
-        Expression::ImageQuery { image, query } => {
-            visit(*image);
-            if let naga::ImageQuery::Size { level: Some(level) } = query {
-                visit(*level);
-            }
-        }
-        Expression::Unary { expr, .. } | Expression::Derivative { expr, .. } | Expression::As { expr, .. } => visit(*expr),
-        Expression::Binary { left, right, .. } => {
-            visit(*left);
-            visit(*right);
-        }
-        Expression::Select { condition, accept, reject } => {
-            visit(*condition);
-            visit(*accept);
-            visit(*reject);
-        }
-        Expression::Relational { argument, .. } => visit(*argument),
-        Expression::Math { arg, arg1, arg2, arg3, .. } => {
-            visit(*arg);
-            arg1.iter().chain(arg2).chain(arg3).for_each(|&h| visit(h));
-        }
-        Expression::ArrayLength(h) => visit(*h),
-        Expression::RayQueryVertexPositions { query, .. } | Expression::RayQueryGetIntersection { query, .. } => visit(*query),
-        Expression::CooperativeLoad { data, .. } => {
-            visit(data.pointer);
-            visit(data.stride);
-        }
-        Expression::CooperativeMultiplyAdd { a, b, c } => {
-            visit(*a);
-            visit(*b);
-            visit(*c);
-        }
-    }
-}
-
-/// Operands of a statement that has no blocks and is neither store nor call.
-fn operands(statement: &Statement, visit: &mut dyn FnMut(Handle<Expression>)) {
-    match statement {
-        Statement::ImageStore {
-            image,
-            coordinate,
-            array_index,
-            value,
-        } => {
-            [*image, *coordinate, *value].into_iter().chain(*array_index).for_each(visit);
-        }
-        Statement::Atomic {
-            pointer,
-            fun,
-            value,
-            result,
-        } => {
-            let compare = match fun {
-                naga::AtomicFunction::Exchange { compare } => *compare,
-                _ => None,
-            };
-            [*pointer, *value].into_iter().chain(compare).chain(*result).for_each(visit);
-        }
-        Statement::ImageAtomic {
-            image,
-            coordinate,
-            array_index,
-            fun,
-            value,
-        } => {
-            let compare = match fun {
-                naga::AtomicFunction::Exchange { compare } => *compare,
-                _ => None,
-            };
-            [*image, *coordinate, *value]
-                .into_iter()
-                .chain(compare)
-                .chain(*array_index)
-                .for_each(visit);
-        }
-        Statement::WorkGroupUniformLoad { pointer, result } => [*pointer, *result].into_iter().for_each(visit),
-        Statement::SubgroupBallot { result, predicate } => [*result].into_iter().chain(*predicate).for_each(visit),
-        Statement::SubgroupGather { mode, argument, result } => {
-            let index = match *mode {
-                naga::GatherMode::BroadcastFirst | naga::GatherMode::QuadSwap(_) => None,
-                naga::GatherMode::Broadcast(h)
-                | naga::GatherMode::Shuffle(h)
-                | naga::GatherMode::ShuffleDown(h)
-                | naga::GatherMode::ShuffleUp(h)
-                | naga::GatherMode::ShuffleXor(h)
-                | naga::GatherMode::QuadBroadcast(h) => Some(h),
-            };
-            [*argument, *result].into_iter().chain(index).for_each(visit);
-        }
-        Statement::SubgroupCollectiveOperation { argument, result, .. } => [*argument, *result].into_iter().for_each(visit),
-        Statement::CooperativeStore { target, data } => [*target, data.pointer, data.stride].into_iter().for_each(visit),
-        // Ray queries and ray pipelines: refused when the unit is checked.
-        _ => {}
     }
 }

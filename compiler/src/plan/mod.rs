@@ -6,11 +6,13 @@ mod bindings;
 mod branches;
 mod live;
 mod names;
+mod operands;
 mod pure;
 mod reach;
+mod stores;
 mod structs;
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::sync::Arc;
 
 use naga::Handle;
@@ -21,10 +23,10 @@ use crate::resolve::{Instances, Tree};
 
 pub use bindings::{Block, GROUPS, PlannedGlobal, declared, declaring, is_instances, is_params};
 pub use branches::{Choice, choice, leaves, reachable};
-pub use live::{is_dead_store, struct_of};
 pub use names::joined;
 pub use pure::can_go;
-pub use reach::{Roots, with_plan};
+pub use reach::{Roots, plan, roomy};
+pub use stores::{is_dead_store, struct_of};
 pub use structs::Structs;
 
 /// A unit in the plan: a module instance, or an interface.
@@ -104,6 +106,8 @@ pub struct Plan {
     pub globals: Vec<PlannedGlobal>,
     /// Uniform blocks by group.
     pub blocks: Vec<Block>,
+    /// Whether functions are nested or chained so deep that walks over them want a large stack: see [`roomy`].
+    pub deep: bool,
     /// Emitted names of constants, overrides, structs, aliases and variables: home, name in the unit.
     pub names: HashMap<(usize, String), String>,
 }
@@ -130,6 +134,17 @@ impl Planned {
             Body::Entry(index) => Some(&ir.entry_points[index].function),
             Body::Combined { .. } => None,
         }
+    }
+
+    /// Results of its calls and other statements, with their places.
+    pub fn results<'p>(&self, homes: &'p [Home]) -> &'p [(Handle<naga::Expression>, std::ops::Range<usize>)] {
+        let unit = &homes[self.home].unit;
+        let index = match self.body {
+            Body::Function(handle) => handle.index(),
+            Body::Entry(index) => unit.ir.functions.len() + index,
+            Body::Combined { .. } => return &[],
+        };
+        &unit.results[index]
     }
 
     /// Types of its expressions.

@@ -1,17 +1,17 @@
 //! Emitted names: interfaces' items keep theirs, modules' items get the instance's before them.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::{Body, Plan};
 
 /// Gives every function and every item of a unit its emitted name.
 pub fn assign(plan: &mut Plan) {
-    let mut used = reserved(plan);
+    let mut names = Names::new(plan);
     // Interfaces first: their names are the contract.
     let interfaces = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_none());
     let instances = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_some());
     let order: Vec<usize> = interfaces.chain(instances).collect();
-    let mut functions: HashMap<(usize, String), usize> = HashMap::new();
+    let mut functions: HashMap<(usize, String), usize> = HashMap::default();
     for (index, planned) in plan.functions.iter().enumerate() {
         if !matches!(planned.body, Body::Combined { .. }) {
             functions.insert((planned.home, planned.source_name(&plan.homes).to_owned()), index);
@@ -29,19 +29,19 @@ pub fn assign(plan: &mut Plan) {
             } else {
                 joined(&prefix, &item.name)
             };
-            let name = free(wanted, &mut used);
+            let name = names.free(wanted);
             if let Some(function) = function {
                 plan.functions[function].name.clone_from(&name);
             }
             plan.names.insert((home, item.name.clone()), name);
         }
         for name in unit.needs.overrides.keys().chain(unit.needs.constants.keys()) {
-            let emitted = free(joined(&prefix, name), &mut used);
+            let emitted = names.free(joined(&prefix, name));
             plan.names.insert((home, crate::parse::constant_name(name)), emitted);
         }
         if !unit.needs.instances.is_empty() {
             for name in ["Instance", "instances"] {
-                let emitted = free(joined(&prefix, name), &mut used);
+                let emitted = names.free(joined(&prefix, name));
                 plan.names.insert((home, name.to_owned()), emitted);
             }
         }
@@ -54,28 +54,44 @@ pub fn assign(plan: &mut Plan) {
             } else {
                 format!("{prefix}_{slot}_{function}")
             };
-            plan.functions[index].name = free(wanted, &mut used);
+            plan.functions[index].name = names.free(wanted);
         }
     }
 }
 
-/// Names that must not be taken: blocks, and every local and builtin that some text of the plan mentions, lest a
-/// renamed item be captured by a local or hide a builtin.
-fn reserved(plan: &Plan) -> HashSet<String> {
-    let mut used: HashSet<String> = HashSet::new();
-    for group in super::GROUPS {
-        used.insert(format!("{group}_params"));
-        used.insert(joined(group, "Params"));
-    }
-    for home in &plan.homes {
-        for item in &home.unit.scan.items {
-            used.extend(item.locals.iter().cloned());
-            let text = &home.unit.file.text;
-            let words = item.references.iter().map(|r| &text[home.unit.scan.tokens[r.token].range()]);
-            used.extend(words.filter(|w| home.unit.origin(w).is_none()).map(str::to_owned));
+/// Names that are taken: those of the blocks and those given so far. The words of every text of the plan are not given
+/// either, lest a renamed item be captured by a local or hide a word of the language.
+struct Names {
+    given: HashSet<String>,
+    units: Vec<std::sync::Arc<crate::parse::Unit>>,
+}
+
+impl Names {
+    fn new(plan: &Plan) -> Self {
+        let mut given = HashSet::default();
+        for group in super::GROUPS {
+            given.insert(format!("{group}_params"));
+            given.insert(joined(group, "Params"));
         }
+        let first = |&(index, home): &(usize, &super::Home)| home.first == index;
+        let units = plan
+            .homes
+            .iter()
+            .enumerate()
+            .filter(first)
+            .map(|(_, h)| std::sync::Arc::clone(&h.unit))
+            .collect();
+        Self { given, units }
     }
-    used
+
+    fn free(&mut self, wanted: String) -> String {
+        let mut name = wanted;
+        while self.given.contains(&name) || self.units.iter().any(|u| u.words.contains(&name)) {
+            name.push('_');
+        }
+        self.given.insert(name.clone());
+        name
+    }
 }
 
 /// Instance and item in the item's own style: `point_light`, `PointInstance`, `POINT_LIMIT`.
@@ -98,12 +114,4 @@ pub fn joined(prefix: &str, name: &str) -> String {
         }
         _ => format!("{prefix}_{name}"),
     }
-}
-
-fn free(wanted: String, used: &mut HashSet<String>) -> String {
-    let mut name = wanted;
-    while !used.insert(name.clone()) {
-        name.push('_');
-    }
-    name
 }

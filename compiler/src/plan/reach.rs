@@ -1,6 +1,6 @@
 //! From the entry points to every function that is called, across modules.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 use std::sync::Arc;
 
 use naga::{Block, Handle, Statement};
@@ -33,26 +33,28 @@ const SHALLOW_BLOCKS: usize = 24;
 /// Longest possible chain of calls that is followed there.
 const SHALLOW_CALLS: usize = 512;
 
-/// Plans a pass of a resolved tree and works with the plan, on a large stack where functions are nested or chained so deep
-/// that the caller's may not do: planning, linking and validating recurse as deep as they are.
+/// Plans a pass of a resolved tree.
 ///
 /// # Errors
-/// Units do not parse, do not fit together, or call each other in a circle; or the work fails.
-pub fn with_plan<T: Send>(
-    catalog: &Catalog,
-    tree: Tree,
-    instances: Instances,
-    roots: &Roots,
-    work: impl FnOnce(Plan) -> Result<T, Report> + Send,
-) -> Result<T, Report> {
+/// Units do not parse, do not fit together, or call each other in a circle.
+pub fn plan(catalog: &Catalog, tree: Tree, instances: Instances, roots: &Roots) -> Result<Plan, Report> {
     let reach = prepare(catalog, tree, instances)?;
     let units = || reach.homes.iter().map(|h| h.unit.depth);
     let deep = units().any(|(blocks, _)| blocks > SHALLOW_BLOCKS) || units().map(|(_, calls)| calls).sum::<usize>() > SHALLOW_CALLS;
-    let all = || work(plan(catalog, reach, roots)?);
+    let mut plan = roomy(deep, || follow(catalog, reach, roots))??;
+    plan.deep = deep;
+    Ok(plan)
+}
+
+/// Does work that recurses as deep as functions are nested or call each other, on a large stack where that is deep.
+///
+/// # Errors
+/// There is no such stack to be had, or the work panics on it.
+pub fn roomy<T: Send>(deep: bool, work: impl FnOnce() -> T + Send) -> Result<T, Diagnostic> {
     if deep {
-        guarded(codes::UPSTREAM_PANIC, "linking", all)?
+        guarded(codes::UPSTREAM_PANIC, "linking", work)
     } else {
-        all()
+        Ok(work())
     }
 }
 
@@ -63,16 +65,16 @@ fn prepare(catalog: &Catalog, tree: Tree, instances: Instances) -> Result<Reach<
         tree,
         instances,
         homes: Vec::new(),
-        interfaces: HashMap::new(),
+        interfaces: HashMap::default(),
         functions: Vec::new(),
-        memo: HashMap::new(),
+        memo: HashMap::default(),
         stack: Vec::new(),
     };
     reach.instance_homes()?;
     Ok(reach)
 }
 
-fn plan(catalog: &Catalog, mut reach: Reach, roots: &Roots) -> Result<Plan, Report> {
+fn follow(catalog: &Catalog, mut reach: Reach, roots: &Roots) -> Result<Plan, Report> {
     reach.roots(roots)?;
     let Reach {
         tree,
@@ -95,7 +97,8 @@ fn plan(catalog: &Catalog, mut reach: Reach, roots: &Roots) -> Result<Plan, Repo
         live_params: Default::default(),
         globals: Vec::new(),
         blocks: Vec::new(),
-        names: HashMap::new(),
+        deep: false,
+        names: HashMap::default(),
     };
     live::analyse(&mut plan);
     bindings::allocate(catalog, &mut plan)?;
@@ -227,7 +230,7 @@ impl Reach<'_> {
         }
         self.stack.push(target.clone());
         let (home, body) = target.clone();
-        let mut calls = HashMap::new();
+        let mut calls = HashMap::default();
         let mut targets = Vec::new();
         let pure;
         if let Body::Combined { slot, function, .. } = &body {
@@ -245,10 +248,10 @@ impl Reach<'_> {
             let mut called = Vec::new();
             calls_in(&unit.ir, function, &function.body, &mut called);
             for handle in called {
-                if !calls.contains_key(&handle) {
+                if let std::collections::hash_map::Entry::Vacant(e) = calls.entry(handle) {
                     let next = self.call(home, handle)?;
                     let id = self.visit(next)?;
-                    calls.insert(handle, id);
+                    e.insert(id);
                 }
             }
             pure = is_pure(&unit, function, &|f| {

@@ -1,8 +1,7 @@
 //! Structs across units, and which of their members anybody reads.
 
-use std::collections::HashMap;
-
 use naga::{Handle, Type};
+use rustc_hash::FxHashMap as HashMap;
 
 use super::Home;
 use crate::parse::StructKey;
@@ -25,8 +24,8 @@ pub struct Struct {
 pub struct Structs {
     /// The structs.
     pub list: Vec<Struct>,
-    /// By home and type handle.
-    ids: HashMap<(usize, Handle<Type>), usize>,
+    /// By home, then by index of the type.
+    ids: Vec<Vec<Option<usize>>>,
     by_key: HashMap<(usize, String), usize>,
 }
 
@@ -34,6 +33,8 @@ impl Structs {
     /// Adds the structs of a home. `interface_home` finds the home of a category's interface, if it is in the plan.
     pub fn add(&mut self, homes: &[Home], home: usize, interface_home: impl Fn(&str) -> Option<usize>) {
         let unit = &homes[home].unit;
+        self.ids.resize_with(homes.len(), Vec::new);
+        self.ids[home] = vec![None; unit.ir.types.len()];
         for (&handle, StructKey { interface, name }) in &unit.structs {
             let declared = interface
                 .as_deref()
@@ -56,13 +57,13 @@ impl Structs {
                 interface: interface.clone(),
                 name: name.clone(),
             });
-            self.ids.insert((home, handle), id);
+            self.ids[home][handle.index()] = Some(id);
         }
     }
 
     /// The struct behind a type of a home's unit.
     pub fn id(&self, home: usize, ty: Handle<Type>) -> Option<usize> {
-        self.ids.get(&(home, ty)).copied()
+        *self.ids.get(home)?.get(ty.index())?
     }
 
     /// The struct of this name that a home declares.

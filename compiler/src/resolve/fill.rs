@@ -68,16 +68,16 @@ impl Resolver<'_> {
         }
         let constants = constants(&module, node, &place)?;
         let index = self.tree.nodes.len();
-        if let Some(label) = &node.label {
-            if !is_identifier(label) {
-                return Err(Diagnostic::new(codes::BAD_LABEL, format!("the label `{label}` is no identifier"))
-                    .at(
-                        &place.file,
-                        place.keys(&["label"]).span(),
-                        "letters, digits and underscores, not a digit first",
-                    )
-                    .into());
-            }
+        if let Some(label) = &node.label
+            && !is_identifier(label)
+        {
+            return Err(Diagnostic::new(codes::BAD_LABEL, format!("the label `{label}` is no identifier"))
+                .at(
+                    &place.file,
+                    place.keys(&["label"]).span(),
+                    "letters, digits and underscores, not a digit first",
+                )
+                .into());
         }
         self.tree.nodes.push(TreeNode {
             module: Arc::clone(&module),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::Tree;
 use crate::catalog::Catalog;
-use crate::manifest::ResourceKind;
+use crate::manifest::{Resource, ResourceKind};
 
 /// A module instance: one or several equal places of the tree.
 #[derive(Clone, Debug)]
@@ -31,10 +31,12 @@ pub struct Instances {
 
 impl Instances {
     /// Equal subtrees are one instance, unless a label tells them apart, a texture of their own does (a scene names
-    /// textures by place), or they are offered functions by different owners.
+    /// textures by place), they are offered functions by different owners, or they hold the shadow maps of different
+    /// kinds of lights, which are numbered by light.
     pub fn find(catalog: &Catalog, tree: &Tree) -> Self {
         let structure = structures(tree);
         let offered = offered_subtrees(catalog, tree);
+        let mapped = mapped_subtrees(tree);
         let mut list: Vec<Instance> = Vec::new();
         let mut of_node: Vec<usize> = Vec::with_capacity(tree.nodes.len());
         let mut known: HashMap<(&str, Option<usize>, Option<usize>), usize> = HashMap::new();
@@ -54,7 +56,7 @@ impl Instances {
                 _ => {
                     let key = (
                         structure[index].as_str(),
-                        parent.filter(|_| offered[index]),
+                        parent.filter(|_| offered[index] || mapped[index]),
                         own_texture.then_some(index),
                     );
                     *known.entry(key).or_insert_with(|| {
@@ -117,6 +119,19 @@ fn offered_subtrees(catalog: &Catalog, tree: &Tree) -> Vec<bool> {
             .is_some_and(|c| !c.manifest.offers.is_empty());
     }
     offered
+}
+
+/// Whether a subtree holds maps of the views of an owner above it: those of a module with instances are its own.
+fn mapped_subtrees(tree: &Tree) -> Vec<bool> {
+    let is_map = |r: &Resource| matches!(r.kind, ResourceKind::Depth { .. } | ResourceKind::Views { .. });
+    let mut mapped = vec![false; tree.nodes.len()];
+    for (index, node) in tree.nodes.iter().enumerate().rev() {
+        mapped[index] |= node.module.manifest.resources.values().any(is_map);
+        if let Some(parent) = node.parent.filter(|_| mapped[index]) {
+            mapped[parent] |= tree.nodes[parent].module.manifest.instances.is_empty();
+        }
+    }
+    mapped
 }
 
 fn name(tree: &Tree, list: &mut [Instance]) {

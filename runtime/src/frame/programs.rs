@@ -48,9 +48,17 @@ impl Programs {
         Ok(Arc::clone(lock(&self.made).entry(key).or_insert(program)))
     }
 
-    /// Compiles many on all cores.
-    pub fn get_many(&self, wanted: &[(Node, String)]) -> Result<Vec<Arc<Program>>, Report> {
-        let made: Vec<_> = wanted.par_iter().map(|(root, pass)| self.get(root, pass)).collect();
+    /// Compiles many on all cores, equal ones once.
+    ///
+    /// The error is that of the first wanted, whichever thread was first.
+    pub fn get_many(&self, wanted: impl Iterator<Item = (Node, String)>) -> Result<(), Report> {
+        let mut distinct: Vec<(Node, String)> = Vec::new();
+        for item in wanted {
+            if !distinct.contains(&item) {
+                distinct.push(item);
+            }
+        }
+        let made: Vec<_> = distinct.par_iter().map(|(root, pass)| self.get(root, pass).map(drop)).collect();
         made.into_iter().collect()
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::{Mesh, Texture};
 use crate::gpu::{DataError, Gpu, GpuError, RuntimeError};
+use crate::image::mip_levels;
 
 /// A mesh's buffers.
 #[derive(Debug)]
@@ -101,7 +102,7 @@ fn upload_texture(gpu: &Gpu, texture: &Texture, srgb: bool, path: &str) -> Resul
     if texture.rgba.len() as u64 != u64::from(width) * u64::from(height) * 4 {
         return Err(DataError::new(path, format!("{} bytes for {width} x {height} texels of 4", texture.rgba.len())).into());
     }
-    let levels = levels(texture, srgb);
+    let levels = mip_levels(texture, srgb);
     let made = gpu.scoped(path, |device| {
         let made = device.create_texture(&wgpu::TextureDescriptor {
             label: Some(path),
@@ -141,73 +142,4 @@ fn upload_texture(gpu: &Gpu, texture: &Texture, srgb: bool, path: &str) -> Resul
         made.create_view(&wgpu::TextureViewDescriptor::default())
     });
     made.map_err(|error: GpuError| error.into())
-}
-
-/// The texture and its smaller levels down to one texel, each texel the mean of those under it, in linear colour.
-fn levels(texture: &Texture, srgb: bool) -> Vec<Texture> {
-    let mut levels = vec![texture.clone()];
-    while let Some(last) = levels.last()
-        && (last.width > 1 || last.height > 1)
-    {
-        let smaller = half(last, srgb);
-        levels.push(smaller);
-    }
-    levels
-}
-
-fn half(image: &Texture, srgb: bool) -> Texture {
-    let (width, height) = ((image.width / 2).max(1), (image.height / 2).max(1));
-    let texel = |x: u32, y: u32, c: usize| {
-        let (x, y) = (x.min(image.width - 1) as usize, y.min(image.height - 1) as usize);
-        let value = f32::from(image.rgba[(y * image.width as usize + x) * 4 + c]) / 255.0;
-        if srgb && c < 3 { decode(value) } else { value }
-    };
-    let mut rgba = Vec::with_capacity(width as usize * height as usize * 4);
-    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-        for c in 0..4 {
-            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| texel(2 * x + i, 2 * y + j, c));
-            let mean = corners.iter().sum::<f32>() / 4.0;
-            let mean = if srgb && c < 3 { encode(mean) } else { mean };
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // means of values in [0, 1]
-            rgba.push((mean * 255.0 + 0.5) as u8);
-        }
-    }
-    Texture { width, height, rgba }
-}
-
-/// IEC 61966-2-1, encoded to linear.
-fn decode(v: f32) -> f32 {
-    if v <= 0.040_45 {
-        v / 12.92
-    } else {
-        ((v + 0.055) / 1.055).powf(2.4)
-    }
-}
-
-/// IEC 61966-2-1, linear to encoded.
-fn encode(v: f32) -> f32 {
-    if v <= 0.003_130_8 {
-        v * 12.92
-    } else {
-        1.055 * v.powf(1.0 / 2.4) - 0.055
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Catches means of encoded values (black and white would give 128), and odd sizes that lose or overrun rows.
-    #[test]
-    fn smaller_levels_are_linear_means() {
-        let board = Texture {
-            width: 3,
-            height: 2,
-            rgba: [[0, 0, 0, 0], [255, 255, 255, 255], [255; 4], [255; 4], [0; 4], [0; 4]].concat(),
-        };
-        let encoded = levels(&board, true);
-        assert_eq!(encoded.iter().map(|l| (l.width, l.height)).collect::<Vec<_>>(), [(3, 2), (1, 1)]);
-        assert_eq!(encoded[1].rgba, [188, 188, 188, 128]);
-        assert_eq!(levels(&board, false)[1].rgba, [128; 4]);
-    }
 }

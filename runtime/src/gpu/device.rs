@@ -250,7 +250,8 @@ impl Gpu {
         // The receiver lives until the end of this function, and nobody else waits for what is sent.
         staging.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
         self.wait()?;
-        match receiver.try_recv() {
+        // Another thread's poll may be the one that runs the callback, a moment after this thread's has returned.
+        match receiver.recv_timeout(PATIENCE) {
             Ok(Ok(())) => {}
             Ok(Err(error)) => return Err(failed(error.to_string())),
             Err(_) => return Err(failed("the buffer was not mapped".into())),
@@ -322,4 +323,51 @@ fn rank(info: &wgpu::AdapterInfo) -> (u8, bool) {
         wgpu::DeviceType::Cpu => 4,
     };
     (kind, info.backend == wgpu::Backend::Gl)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches wgpu's own handler, which panics, and an error that is lost or returned for ever.
+    #[test]
+    fn an_uncaptured_error_is_returned_once_by_the_next_call() {
+        let own = Gpu::headless().unwrap();
+        let gpu = Gpu::from_parts(own.device().clone(), own.queue().clone());
+        drop(gpu.device().create_buffer(&wgpu::BufferDescriptor {
+            label: Some("wrong"),
+            size: 4,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE,
+            mapped_at_creation: false,
+        }));
+        let next = gpu.buffer("next", wgpu::BufferUsages::UNIFORM, &[1, 2, 3], 0);
+        assert!(
+            matches!(&next, Err(GpuError::Invalid { what, .. }) if what == "a GPU command"),
+            "{next:?}"
+        );
+        assert!(gpu.buffer("next", wgpu::BufferUsages::UNIFORM, &[1, 2, 3], 0).is_ok());
+    }
+
+    /// Catches a request for more than there is that panics or comes back as something else.
+    #[test]
+    fn a_buffer_beyond_the_limits_is_an_error() {
+        let gpu = crate::gpu::testing::gpu();
+        let huge = gpu.buffer("huge", wgpu::BufferUsages::STORAGE, &[], 1 << 50);
+        assert!(
+            matches!(huge, Err(GpuError::Invalid { .. } | GpuError::OutOfMemory { .. })),
+            "{huge:?}"
+        );
+    }
+
+    /// Catches bytes lost at the end of odd lengths, on the way there or back.
+    #[test]
+    fn odd_bytes_come_back() {
+        let gpu = crate::gpu::testing::gpu();
+        for length in [1, 3, 4, 7] {
+            let bytes: Vec<u8> = (1..=length).collect();
+            let buffer = gpu.buffer("odd", wgpu::BufferUsages::COPY_SRC, &bytes, 0).unwrap();
+            let commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            assert_eq!(gpu.read("odd", commands, &buffer, u64::from(length)).unwrap(), bytes);
+        }
+    }
 }

@@ -415,6 +415,8 @@ mod tests {
             ..request
         };
         assert!(matches!(pipelines.render(&unknown).unwrap_err(), GpuError::Invalid { .. }));
+        let many = vec![unknown; 4];
+        assert!(matches!(pipelines.render_many(&many).unwrap_err(), GpuError::Invalid { .. }));
         assert_eq!(gpu().check(), Ok(()), "the error was captured");
     }
 

@@ -16,8 +16,9 @@ use super::pipeline::Pipelines;
 use super::resources::{Bound, bind_group, constants, instance_rows, param_blocks, sampler, stand_in};
 use super::{DataError, Gpu, GpuError, RuntimeError};
 
-/// Bind group and bindings of the table, as the compiler makes them.
-const TABLE: (u32, u32, u32) = (3, 0, 1);
+/// Bind group of the table, and the host resources that its two buffers are, as the compiler makes them.
+/// Their bindings depend on what else is in the group.
+const TABLE: (u32, &str, &str) = (3, "probe_input", "probe_output");
 /// Most rows of one dispatch, so that a chunk's buffers stay small beside what the device has.
 const MOST_ROWS: u64 = 1 << 18;
 
@@ -81,12 +82,12 @@ struct Batch {
 /// A row does not fit, or the GPU fails.
 pub fn evaluate(pipelines: &Pipelines, gpu: &Gpu, program: &Program, names: &Names, inputs: &[Json]) -> Result<Vec<Json>, RuntimeError> {
     let reflection = program.reflection();
-    let (group, input, output) = TABLE;
-    let output = table(reflection, group, output).ok_or_else(|| GpuError::Unsupported {
+    let (_, input, output) = TABLE;
+    let output = table(reflection, output).ok_or_else(|| GpuError::Unsupported {
         what: "probing".into(),
         needs: "a result that a buffer can hold".into(),
     })?;
-    let arguments = table(reflection, group, input);
+    let arguments = table(reflection, input);
     let mut packed = Vec::with_capacity(inputs.len());
     let mut batches: IndexMap<String, Batch> = IndexMap::new();
     for (i, row) in inputs.iter().enumerate() {
@@ -113,12 +114,17 @@ pub fn evaluate(pipelines: &Pipelines, gpu: &Gpu, program: &Program, names: &Nam
 }
 
 /// Layout of the elements of a table.
-fn table(reflection: &Reflection, group: u32, binding: u32) -> Option<&Layout> {
-    let found = reflection.bindings.iter().find(|b| b.group == group && b.binding == binding)?;
+fn table<'a>(reflection: &'a Reflection, name: &str) -> Option<&'a Layout> {
+    let found = reflection.bindings.iter().find(|b| is_host(b, name))?;
     match &found.ty {
         BindingType::Storage { layout, .. } => Some(layout),
         _ => None,
     }
+}
+
+/// Whether the host fills the binding under this name.
+fn is_host(binding: &Binding, name: &str) -> bool {
+    matches!(&binding.fill, Fill::Resource { declared: ResourceKind::Host(host), .. } if host == name)
 }
 
 /// A row's bytes, parameters and instances.
@@ -304,9 +310,9 @@ fn run_batch(
         let bytes: Vec<u8> = rows.iter().flat_map(|row| &tables.packed[*row]).copied().collect();
         let size = size_with(tables.output, rows.len());
         let results_buffer = gpu.buffer("probe results", U::STORAGE | U::COPY_SRC, &[], size)?;
-        let table = bind_group(gpu, &pipeline, reflection, TABLE.0, |binding| match binding.binding {
-            b if b == TABLE.1 && tables.arguments.is_some() => Ok(Bound::Buffer(gpu.buffer("probe inputs", U::STORAGE, &bytes, 0)?)),
-            b if b == TABLE.2 => Ok(Bound::Buffer(results_buffer.clone())),
+        let table = bind_group(gpu, &pipeline, reflection, TABLE.0, |binding| match binding {
+            b if is_host(b, TABLE.1) => Ok(Bound::Buffer(gpu.buffer("probe inputs", U::STORAGE, &bytes, 0)?)),
+            b if is_host(b, TABLE.2) => Ok(Bound::Buffer(results_buffer.clone())),
             _ => resource(binding),
         })?;
         groups.truncate(TABLE.0 as usize);
@@ -359,6 +365,7 @@ mod tests {
         params: {
             \"scale\": (type: F32, default: 1.0, range: Some((0.0, 10.0))),
             \"other\": (type: F32, default: 1.0),
+            \"gain\": (type: F32, default: 1.0, mode: Override),
             \"fixed\": (type: U32, default: 1, mode: Constant),
         },
         instances: {\"power\": (type: F32, default: 0.25), \"gone\": (type: F32, default: 0.0)},
@@ -370,7 +377,7 @@ mod tests {
             var sum = 0.0;
             for (var l = 0u; l < arrayLength(&instances); l++) { sum += instances[l].power; }
             let white = textureLoad(tint, vec2u(0u), 0).x;
-            return s.n * s.alpha * params.scale + v * f32(k * params.fixed) + vec3f(sum * white, 0.0, 1.0 / v.z);
+            return s.n * s.alpha * params.scale + v * f32(k * params.fixed) + vec3f(sum * white, params.gain * f32(arrayLength(&instances)), 1.0 / v.z);
         }";
 
     fn run(inputs: &[Json]) -> Result<Vec<Json>, RuntimeError> {
@@ -393,11 +400,35 @@ mod tests {
         let rows = [
             json!({"s": {"n": [2, 4, 8], "unread": [1, 2]}, "v": [0, 0, 1], "k": 0}),
             json!({"s": {"n": [2, 4, 8], "alpha": 1}, "v": [1, 2, 4], "k": 3, "params": {"scale": 2}}),
-            json!({"v": [1, 2, 0], "k": 1, "instances": [{"power": 1}, {"power": 2}, {"gone": 7}], "params": {"other": 1}}),
-            json!({"s": {"n": [0, 0, 1]}, "v": [0, 0, -1], "k": 0, "params": {"lamp.scale": 4}}),
+            json!({"v": [1, 2, 0], "k": 1, "instances": [{"power": 1}, {"power": 2}, {"gone": 7}], "params": {"other": 1, "gain": -2}}),
+            json!({"s": {"n": [0, 0, 2]}, "v": [0, 0, -1], "k": 0, "params": {"lamp.scale": 4}}),
         ];
-        let expected = json!([[1.25, 2.0, 5.0], [7.25, 14.0, 28.25], [4.25, 2.0, "Infinity"], [0.25, 0.0, 1.0]]);
+        let expected = json!([[1.25, 3.0, 5.0], [7.25, 15.0, 28.25], [4.25, -4.0, "Infinity"], [0.25, 1.0, 3.0]]);
         assert_eq!(Json::Array(run(&rows).unwrap()), expected);
+    }
+
+    /// Catches the table being looked for at fixed bindings: parameters of a category of group 3 come before it.
+    #[test]
+    fn the_table_shares_its_group() {
+        let catalog = catalog(&[
+            ("tested/category.ron", "(summary: \"tested\", order: 1, group: 3)"),
+            ("tested/interface.wgsl", "fn eval(x: f32) -> f32 { return x; }"),
+            (
+                "tested/scale/module.ron",
+                "(summary: \"tested\", params: {\"by\": (type: F32, default: 3.0)})",
+            ),
+            ("tested/scale/scale.wgsl", "fn eval(x: f32) -> f32 { return params.by * x; }"),
+        ]);
+        let recipe = Recipe::parse("test", "\"scale\"").unwrap();
+        let answer = probe(
+            &gpu(),
+            &catalog,
+            &recipe,
+            "eval",
+            &[json!({"x": 2}), json!({"x": 2, "params": {"by": 5}})],
+        )
+        .unwrap();
+        assert_eq!(answer["results"], json!([6.0, 10.0]));
     }
 
     /// Catches a table that is cut at a dispatch's or a chunk's limit.

@@ -102,12 +102,14 @@ mod tests {
         }
     }
 
-    /// Catches averaging of code values: half black and half white is linear .5, code 188, not 128. Alpha stays linear.
+    /// Catches averaging of code values, on either side of the curve: half black and half white is linear .5, code 188, not 128;
+    /// codes 10 and 200 are .003035 and .577580, their mean is code 147. Alpha stays linear.
     #[test]
     fn averages_light() {
         let levels = mip_levels(&grey(2, 1, &[0, 255]), true);
         assert_eq!(levels.len(), 2);
         assert_eq!(levels[1].rgba, [188, 188, 188, 128]);
+        assert_eq!(mip_levels(&grey(2, 1, &[10, 200]), true)[1].rgba, [147, 147, 147, 105]);
         let levels = mip_levels(&grey(2, 1, &[0, 255]), false);
         assert_eq!(levels[1].rgba, [128, 128, 128, 128]);
     }

@@ -91,13 +91,11 @@ impl Mesh {
         mesh
     }
 
-    /// The same triangles for a model matrix that mirrors: seen through it their outside is outside again.
+    /// The same mesh for a model matrix that mirrors: the bitangents' signs are turned, as the shader's cross product is not mirrored.
+    /// The triangles stay: a renderer turns its front face for such matrices.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let mut mesh = self.clone();
-        for triangle in mesh.indices.chunks_exact_mut(3) {
-            triangle.swap(1, 2);
-        }
         for tangent in &mut mesh.tangents {
             tangent[3] = -tangent[3];
         }

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::gltf::{Asset, GltfError};
-use super::{Mesh, MeshError, generate_tangents, teapot};
+use super::{Mesh, MeshError, teapot};
 
 /// Most subdivisions along one direction.
 pub const MAX_SEGMENTS: u32 = 1024;
@@ -139,7 +139,7 @@ impl Shape {
             Self::Plane { size, segments } => {
                 let (x, z) = (length("size", size[0])?, length("size", size[1])?);
                 let (nx, nz) = (count("segments", segments[0], 1)?, count("segments", segments[1], 1)?);
-                grid(&mut mesh, nx, nz, |u, v| {
+                grid(&mut mesh, nx, nz, Vec3::X, |u, v| {
                     (Vec3::new((u - 0.5) * x, 0.0, (v - 0.5) * z), Vec3::Y, Vec2::new(u, v))
                 });
             }
@@ -149,7 +149,7 @@ impl Shape {
                     // Right and down on the face as seen from outside, up being +y on the four walls.
                     let down = if normal.y == 0.0 { -Vec3::Y } else { Vec3::Z * normal.y };
                     let right = normal.cross(down);
-                    grid(&mut mesh, 1, 1, |u, v| {
+                    grid(&mut mesh, 1, 1, right, |u, v| {
                         let at = normal + right * (2.0 * u - 1.0) + down * (2.0 * v - 1.0);
                         (at * half, normal, Vec2::new(u, v))
                     });
@@ -202,7 +202,6 @@ impl Shape {
                 });
             }
         }
-        generate_tangents(&mut mesh);
         Ok(mesh)
     }
 }
@@ -220,14 +219,15 @@ fn arc(turns: f32) -> Vec2 {
     }
 }
 
-/// A grid of quads whose u runs right and v runs down as seen from outside.
-fn grid(mesh: &mut Mesh, nu: u32, nv: u32, at: impl Fn(f32, f32) -> (Vec3, Vec3, Vec2)) {
+/// A flat grid of quads whose u runs along `right` and v runs down as seen from outside.
+fn grid(mesh: &mut Mesh, nu: u32, nv: u32, right: Vec3, at: impl Fn(f32, f32) -> (Vec3, Vec3, Vec2)) {
     let first = mesh.positions.len() as u32;
     for j in 0..=nv {
         for i in 0..=nu {
             let (position, normal, uv) = at(i as f32 / nu as f32, j as f32 / nv as f32);
             mesh.positions.push(position.to_array());
             mesh.normals.push(normal.to_array());
+            mesh.tangents.push(right.extend(1.0).to_array());
             mesh.uvs.push(uv.to_array());
         }
     }
@@ -257,6 +257,7 @@ fn turned(mesh: &mut Mesh, nu: u32, nv: u32, profile: impl Fn(f32) -> (Vec2, Vec
             let p = if on_axis { Vec2::new(0.0, p.y) } else { p };
             mesh.positions.push(place(p).to_array());
             mesh.normals.push(place(n).normalize_or(Vec3::Y).to_array());
+            mesh.tangents.push([-around.y, 0.0, -around.x, 1.0]);
             mesh.uvs.push([u, v]);
         }
     }
@@ -265,7 +266,12 @@ fn turned(mesh: &mut Mesh, nu: u32, nv: u32, profile: impl Fn(f32) -> (Vec2, Vec
             let a = first + j * (nu + 1) + i;
             let (b, c, d) = (a + 1, a + nu + 2, a + nu + 1);
             // On the axis each vertex serves the segment to its right: a for the top row, d for the bottom row.
-            for t in [[a, d, c], [a, c, b]] {
+            let triangles = if mesh.positions[d as usize] == mesh.positions[c as usize] {
+                [[a, d, b], [d, c, b]]
+            } else {
+                [[a, d, c], [a, c, b]]
+            };
+            for t in triangles {
                 push_triangle(mesh, t);
             }
         }
@@ -281,177 +287,4 @@ fn push_triangle(mesh: &mut Mesh, t: [u32; 3]) {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::f32::consts::TAU;
-
-    use super::*;
-
-    fn build(shape: &Shape) -> Result<Mesh, MeshError> {
-        shape.build(|_| unreachable!())
-    }
-
-    fn all() -> Vec<(Shape, f32, f32)> {
-        let (r, h, t) = (0.5, 0.8, 0.2);
-        vec![
-            // Area and volume in closed form.
-            (
-                Shape::Plane {
-                    size: [2.0, 3.0],
-                    segments: [3, 5],
-                },
-                6.0,
-                0.0,
-            ),
-            (Shape::Box { size: [1.0, 2.0, 3.0] }, 22.0, 6.0),
-            (
-                Shape::Sphere {
-                    radius: r,
-                    segments: 128,
-                    rings: 64,
-                },
-                4.0 * PI * r * r,
-                4.0 / 3.0 * PI * r * r * r,
-            ),
-            (
-                Shape::Cylinder {
-                    radius: r,
-                    height: h,
-                    segments: 256,
-                },
-                TAU * r * (h + r),
-                PI * r * r * h,
-            ),
-            (
-                Shape::Cone {
-                    radius: r,
-                    height: h,
-                    segments: 256,
-                },
-                PI * r * (r + r.hypot(h)),
-                PI * r * r * h / 3.0,
-            ),
-            (
-                Shape::Torus {
-                    radius: r,
-                    tube: t,
-                    segments: 128,
-                    rings: 64,
-                },
-                TAU * r * TAU * t,
-                TAU * r * PI * t * t,
-            ),
-        ]
-    }
-
-    /// Catches a face left out or wound inward, a wrong size, and normals that disagree with the winding.
-    #[test]
-    fn areas_volumes_and_normals() {
-        for (primitive, area, volume) in all() {
-            let mesh = build(&primitive).unwrap();
-            mesh.check().unwrap();
-            let (mut a, mut v) = (0.0, 0.0);
-            for t in mesh.indices.chunks_exact(3) {
-                let p = [0, 1, 2].map(|k| Vec3::from(mesh.positions[t[k] as usize]));
-                let face = (p[1] - p[0]).cross(p[2] - p[0]);
-                a += face.length() / 2.0;
-                v += p[0].dot(p[1].cross(p[2])) / 6.0;
-                for &k in t {
-                    let n = Vec3::from(mesh.normals[k as usize]);
-                    assert!(n.dot(face.normalize()) > 0.9, "{primitive:?} {p:?} {n:?}");
-                }
-            }
-            assert!((a / area - 1.0).abs() < 2e-3, "{primitive:?}: area {a}, not {area}");
-            assert!(
-                (v - volume).abs() < 3e-3 * volume.max(1e-3),
-                "{primitive:?}: volume {v}, not {volume}"
-            );
-        }
-    }
-
-    /// Catches tangents that do not run with u, and mirrored texture coordinates (text would read backwards).
-    #[test]
-    fn textures_are_not_mirrored() {
-        for (primitive, ..) in all() {
-            let mesh = build(&primitive).unwrap();
-            for t in &mesh.tangents {
-                assert_eq!(t[3], 1.0, "{primitive:?}");
-            }
-        }
-        let plane = Shape::Plane {
-            size: [1.0, 1.0],
-            segments: [1, 1],
-        }
-        .build(|_| unreachable!())
-        .unwrap();
-        assert!(plane.tangents.iter().all(|t| t[..3] == [1.0, 0.0, 0.0]));
-    }
-
-    /// Catches one shared pole vertex, whose u would swirl the texture around the pole.
-    #[test]
-    fn poles_have_a_vertex_for_each_segment() {
-        let mesh = Shape::Sphere {
-            radius: 1.0,
-            segments: 8,
-            rings: 4,
-        }
-        .build(|_| unreachable!())
-        .unwrap();
-        assert_eq!(mesh.triangles(), 8 * 2 + 8 * 2 * 2);
-        let mut u: Vec<f32> = (0..mesh.positions.len())
-            .filter(|&i| mesh.positions[i][1] == 1.0)
-            .map(|i| mesh.uvs[i][0])
-            .collect();
-        u.sort_by(f32::total_cmp);
-        assert_eq!(u, (0..8).map(|i| (i as f32 + 0.5) / 8.0).collect::<Vec<_>>());
-    }
-
-    #[test]
-    fn nonsense_is_an_error() {
-        for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-            assert!(
-                Shape::Plane {
-                    size: [1.0, bad],
-                    segments: [1, 1]
-                }
-                .build(|_| unreachable!())
-                .is_err()
-            );
-            assert!(build(&Shape::Box { size: [1.0, bad, 1.0] }).is_err());
-            assert!(
-                Shape::Sphere {
-                    radius: bad,
-                    segments: 8,
-                    rings: 8
-                }
-                .build(|_| unreachable!())
-                .is_err()
-            );
-            assert!(
-                Shape::Torus {
-                    radius: 1.0,
-                    tube: bad,
-                    segments: 8,
-                    rings: 8
-                }
-                .build(|_| unreachable!())
-                .is_err()
-            );
-        }
-        let error = Shape::Sphere {
-            radius: 1.0,
-            segments: 2,
-            rings: 8,
-        }
-        .build(|_| unreachable!())
-        .unwrap_err();
-        assert_eq!(error.to_string(), "`segments` is 2, but must be between 3 and 1024");
-        assert!(
-            Shape::Plane {
-                size: [1.0; 2],
-                segments: [1, 100_000]
-            }
-            .build(|_| unreachable!())
-            .is_err()
-        );
-    }
-}
+mod tests;

@@ -8,6 +8,7 @@ mod check;
 mod choice;
 mod derive;
 mod format;
+mod gather;
 mod include;
 mod path;
 mod recipe;

@@ -1,0 +1,253 @@
+//! Writes a planned frame's passes into a command buffer.
+
+use std::sync::Arc;
+
+use shadewright_compiler::manifest::Dispatch;
+
+use super::fill::{Filler, Look, Shown, reads_hdr, value_of};
+use super::list::{List, is_mirrored};
+use super::maps::DEPTH;
+use super::plan::{Compute, Plan};
+use super::target::DISPLAY;
+use super::upload::ATTRIBUTES;
+use super::view::Eye;
+use super::{Draw, Frame};
+use crate::gpu::pipeline::{Pipelines, RenderPipeline, RenderRequest, RenderState};
+use crate::gpu::resources::{constants, depth_attachment, layer_view};
+use crate::gpu::{DataError, RuntimeError};
+
+/// State of the scene's pipelines.
+pub(crate) fn scene_state(draw: &Draw, hdr: wgpu::TextureFormat) -> RenderState {
+    RenderState {
+        color: Some(hdr),
+        blend: draw.alpha_blend,
+        depth: Some(DEPTH),
+        depth_write: !draw.alpha_blend,
+        cull_back: !draw.double_sided,
+        mirrored: is_mirrored(draw),
+    }
+}
+
+/// Shadow maps keep both sides: a thin object casts from wherever the light stands, and a cube map's faces are mirrored.
+pub(crate) const CASTER: RenderState = RenderState {
+    color: None,
+    blend: false,
+    depth: Some(DEPTH),
+    depth_write: true,
+    cull_back: false,
+    mirrored: false,
+};
+
+/// The display pass covers the target with one triangle.
+pub(crate) const SCREEN: RenderState = RenderState {
+    color: Some(DISPLAY),
+    blend: false,
+    depth: None,
+    depth_write: false,
+    cull_back: false,
+    mirrored: false,
+};
+
+/// A pipeline for a program in a state, with the constants that its settings override.
+pub(crate) fn request<'l>(look: &'l Look, state: RenderState) -> Result<RenderRequest<'l>, DataError> {
+    Ok(RenderRequest {
+        program: &look.program,
+        state,
+        constants: constants(look.program.reflection(), |param| value_of(look, param))?,
+    })
+}
+
+/// A frame on its way into a command buffer.
+pub(crate) struct Drawing<'a> {
+    pub pipelines: &'a Pipelines,
+    pub frame: &'a Frame,
+    pub plan: &'a Plan<'a>,
+    pub commands: wgpu::CommandEncoder,
+    pub passes: usize,
+    pub fill: Filler<'a>,
+}
+
+/// One draw call, ready.
+struct Call {
+    pipeline: Arc<RenderPipeline>,
+    groups: Vec<wgpu::BindGroup>,
+    vertices: Vec<wgpu::Buffer>,
+    indices: wgpu::Buffer,
+    count: u32,
+    objects: std::ops::Range<u32>,
+}
+
+impl Drawing<'_> {
+    fn next_pass(&mut self) -> usize {
+        self.passes += 1;
+        self.passes
+    }
+
+    /// Draws all layers of all shadow maps.
+    pub fn shadow_maps(&mut self, depths: &[wgpu::Texture]) -> Result<(), RuntimeError> {
+        let plan = self.plan;
+        for (index, (map, texture)) in plan.maps.iter().zip(depths).enumerate() {
+            for (layer, (eye, list)) in (0..).zip(map.eyes.iter().zip(&plan.map_lists[index])) {
+                let look = |draw: &Draw| plan.casters.get(&(index, draw.material));
+                let calls = self.calls(eye, list, look, |_| CASTER)?;
+                let view = layer_view(texture, layer);
+                let pass = self.commands.begin_render_pass(&wgpu::RenderPassDescriptor {
+                    label: Some("shadow map"),
+                    depth_stencil_attachment: Some(depth_attachment(&view)),
+                    ..Default::default()
+                });
+                draw_calls(pass, &calls);
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws what the camera sees.
+    pub fn scene(&mut self, hdr: &wgpu::TextureView, depth: &wgpu::TextureView) -> Result<(), RuntimeError> {
+        let plan = self.plan;
+        let look = |draw: &Draw| plan.forward[draw.material].as_ref();
+        let calls = self.calls(&plan.eye, &plan.list, look, |draw| scene_state(draw, plan.hdr))?;
+        let [r, g, b] = self.frame.background.to_array().map(f64::from);
+        let pass = self.commands.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("scene"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: hdr,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: Some(depth_attachment(depth)),
+            ..Default::default()
+        });
+        draw_calls(pass, &calls);
+        Ok(())
+    }
+
+    /// The draw calls of a view.
+    fn calls<'l>(
+        &mut self,
+        eye: &Eye,
+        list: &List,
+        look: impl Fn(&Draw) -> Option<&'l Look<'l>>,
+        state: impl Fn(&Draw) -> RenderState,
+    ) -> Result<Vec<Call>, RuntimeError> {
+        let shown = Shown {
+            pass: self.next_pass(),
+            eye: Some(eye),
+            list: Some(list),
+            hdr: None,
+        };
+        let mut calls = Vec::new();
+        for run in &list.runs {
+            let draw = &self.frame.draws[run.draw];
+            let Some(look) = look(draw) else { continue };
+            let path = format!("draws[{}].mesh", run.draw);
+            let mesh = self.fill.uploads.mesh(self.fill.gpu, &draw.mesh, &path)?;
+            if mesh.count == 0 {
+                continue;
+            }
+            let pipeline = self.pipelines.render(&request(look, state(draw))?)?;
+            let attribute = |location: &u32| {
+                let buffer = mesh.attributes.get(*location as usize).and_then(Option::clone);
+                buffer.ok_or_else(|| DataError::new(&path, format!("has no {}, which the recipe reads", ATTRIBUTES[*location as usize])))
+            };
+            calls.push(Call {
+                vertices: pipeline.vertex_locations.iter().map(attribute).collect::<Result<_, _>>()?,
+                groups: self.fill.groups(&pipeline, look, &shown)?,
+                pipeline,
+                indices: mesh.indices.clone(),
+                count: mesh.count,
+                objects: run.objects.clone(),
+            });
+        }
+        Ok(calls)
+    }
+
+    /// Runs compute passes; `hdr` is there after the scene was drawn.
+    pub fn compute(&mut self, computes: &[Compute], hdr: Option<&wgpu::TextureView>) -> Result<(), RuntimeError> {
+        for Compute { entry, over, look } in computes {
+            let plan = self.plan;
+            let shown = Shown {
+                pass: self.next_pass(),
+                eye: Some(&plan.eye),
+                list: None,
+                hdr,
+            };
+            let reflection = look.program.reflection();
+            if hdr.is_none() && reads_hdr(reflection) {
+                return Err(DataError::new(&reflection.pass, "reads the finished frame, but runs before it").into());
+            }
+            let constants = constants(reflection, |param| value_of(look, param))?;
+            let pipeline = self.pipelines.compute(&look.program, entry, &constants)?;
+            let groups = self.fill.groups(&pipeline, look, &shown)?;
+            let size = reflection.entry_points.first().and_then(|e| e.workgroup_size).unwrap_or([1; 3]);
+            let [x, y] = match over {
+                Dispatch::Once => [1, 1],
+                Dispatch::Frame => [0, 1].map(|i| self.frame.size[i].div_ceil(size[i].max(1))),
+            };
+            let mut pass = self.commands.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some(&reflection.pass),
+                timestamp_writes: None,
+            });
+            pass.set_pipeline(&pipeline.pipeline);
+            for (index, group) in (0..).zip(&groups) {
+                pass.set_bind_group(index, group, &[]);
+            }
+            pass.dispatch_workgroups(x, y, 1);
+        }
+        Ok(())
+    }
+
+    /// Draws the display image from the HDR frame.
+    pub fn display(&mut self, look: &Look, texture: &wgpu::Texture, hdr: &wgpu::TextureView) -> Result<(), RuntimeError> {
+        let plan = self.plan;
+        let shown = Shown {
+            pass: self.next_pass(),
+            eye: Some(&plan.eye),
+            list: None,
+            hdr: Some(hdr),
+        };
+        let pipeline = self.pipelines.render(&request(look, SCREEN)?)?;
+        if !pipeline.vertex_locations.is_empty() {
+            return Err(DataError::new("display", "the pass reads a mesh; it must make its triangle from the vertex index").into());
+        }
+        let groups = self.fill.groups(&pipeline, look, &shown)?;
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut pass = self.commands.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("display"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&pipeline.pipeline);
+        for (index, group) in (0..).zip(&groups) {
+            pass.set_bind_group(index, group, &[]);
+        }
+        pass.draw(0..3, 0..1);
+        Ok(())
+    }
+}
+
+fn draw_calls(mut pass: wgpu::RenderPass, calls: &[Call]) {
+    for call in calls {
+        pass.set_pipeline(&call.pipeline.pipeline);
+        for (index, group) in (0..).zip(&call.groups) {
+            pass.set_bind_group(index, group, &[]);
+        }
+        for (slot, buffer) in (0..).zip(&call.vertices) {
+            pass.set_vertex_buffer(slot, buffer.slice(..));
+        }
+        pass.set_index_buffer(call.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..call.count, 0, call.objects.clone());
+    }
+}

@@ -1,0 +1,159 @@
+//! What a frame needs: its programs, views, shadow maps and passes, all found before anything is drawn.
+
+use indexmap::IndexMap;
+use shadewright_compiler::manifest::{Dispatch, Node, PassDecl};
+
+use super::Frame;
+use super::fill::Look;
+use super::list::{List, world_bounds};
+use super::maps::{Map, maps_of, scene_bounds};
+use super::programs::Programs;
+use super::target::hdr_format;
+use super::view::Eye;
+use crate::gpu::{DataError, Gpu, RuntimeError};
+
+/// A frame's programs and views.
+pub(crate) struct Plan<'a> {
+    /// By material; `None` for materials that nothing shown or casting has.
+    pub forward: Vec<Option<Look<'a>>>,
+    pub maps: Vec<Map>,
+    /// By map and material.
+    pub casters: IndexMap<(usize, usize), Look<'a>>,
+    pub display: Option<Look<'a>>,
+    /// Compute passes before the scene is drawn, and before the display pass: entry point, over what, and the program.
+    pub before: Vec<Compute<'a>>,
+    pub after: Vec<Compute<'a>>,
+    pub eye: Eye,
+    pub list: List,
+    /// By map, then layer.
+    pub map_lists: Vec<Vec<List>>,
+    pub hdr: wgpu::TextureFormat,
+}
+
+/// A compute pass.
+pub(crate) struct Compute<'a> {
+    pub entry: String,
+    pub over: Dispatch,
+    pub look: Look<'a>,
+}
+
+impl<'a> Plan<'a> {
+    /// Compiles what the frame needs, on all cores, and finds out from where it is seen.
+    pub fn of(gpu: &Gpu, programs: &Programs, frame: &'a Frame) -> Result<Self, RuntimeError> {
+        let used = used_materials(frame)?;
+        let shown = used.iter().map(|id| &frame.materials[*id]).chain(&frame.display);
+        programs.get_many(shown.map(|m| ((*m.recipe).clone(), "main".to_owned())))?;
+        let bounds = world_bounds(&frame.draws);
+        let scene = scene_bounds(frame, &bounds);
+        let eye = Eye::of_camera(&frame.camera, frame.size, frame.time);
+        let mut plan = Self {
+            forward: vec![None; frame.materials.len()],
+            maps: Vec::new(),
+            casters: IndexMap::new(),
+            display: None,
+            before: Vec::new(),
+            after: Vec::new(),
+            list: List::of_camera(&frame.draws, &bounds, &eye),
+            eye,
+            map_lists: Vec::new(),
+            hdr: hdr_format(gpu, frame.draws.iter().any(|d| d.visible && d.alpha_blend)),
+        };
+        for id in used {
+            let material = &frame.materials[id];
+            let program = programs.get(&material.recipe, "main")?;
+            let parts = (&*material.recipe, &material.settings, &*program);
+            let maps = maps_of(programs, frame, parts, scene, &mut plan.maps)?;
+            let look = Look {
+                id,
+                root: (*material.recipe).clone(),
+                settings: &material.settings,
+                program,
+                maps,
+            };
+            plan.before.extend(computes(programs, &look)?);
+            plan.forward[id] = Some(look);
+        }
+        if let Some(material) = &frame.display {
+            let look = Look {
+                id: frame.materials.len(),
+                root: (*material.recipe).clone(),
+                settings: &material.settings,
+                program: programs.get(&material.recipe, "main")?,
+                maps: Vec::new(),
+            };
+            plan.after = computes(programs, &look)?;
+            plan.display = Some(look);
+        }
+        for map in &plan.maps {
+            let of = |eye| List::of_casters(&frame.draws, &bounds, eye);
+            plan.map_lists.push(map.eyes.iter().map(of).collect());
+        }
+        plan.casters = plan.find_casters(programs, frame)?;
+        Ok(plan)
+    }
+
+    /// The programs that draw materials into maps.
+    fn find_casters(&self, programs: &Programs, frame: &Frame) -> Result<IndexMap<(usize, usize), Look<'a>>, RuntimeError> {
+        let mut wanted = IndexMap::new();
+        for (index, (map, lists)) in self.maps.iter().zip(&self.map_lists).enumerate() {
+            for run in lists.iter().flat_map(|list| &list.runs) {
+                let id = frame.draws[run.draw].material;
+                if let Some(main) = &self.forward[id] {
+                    wanted
+                        .entry((index, id))
+                        .or_insert_with(|| (map.caster(programs, &main.root), main));
+                }
+            }
+        }
+        programs.get_many(wanted.values().map(|(root, _)| (root.clone(), "main".to_owned())))?;
+        let look = |(key, (root, main)): (_, (Node, &Look<'a>))| {
+            let look = Look {
+                program: programs.get(&root, "main")?,
+                root,
+                maps: Vec::new(),
+                ..main.clone()
+            };
+            Ok((key, look))
+        };
+        wanted.into_iter().map(look).collect()
+    }
+}
+
+/// Materials of draws that are shown or cast, checked.
+fn used_materials(frame: &Frame) -> Result<Vec<usize>, DataError> {
+    let mut used = vec![false; frame.materials.len()];
+    for (i, draw) in frame.draws.iter().enumerate() {
+        let Some(seen) = used.get_mut(draw.material) else {
+            let message = format!("material {} of {}", draw.material, frame.materials.len());
+            return Err(DataError::new(format!("draws[{i}].material"), message));
+        };
+        if !draw.model.is_finite() {
+            return Err(DataError::new(format!("draws[{i}].model"), "is not finite"));
+        }
+        if !(draw.bounds.min.is_finite() && draw.bounds.max.is_finite()) {
+            return Err(DataError::new(format!("draws[{i}].bounds"), "is not finite"));
+        }
+        *seen |= draw.visible || draw.casts_shadow;
+    }
+    if !frame.camera.view_projection().is_finite() {
+        return Err(DataError::new("camera", "is not finite"));
+    }
+    Ok((0..used.len()).filter(|i| used[*i]).collect())
+}
+
+/// The compute passes that a program's modules declare, in their order.
+fn computes<'a>(programs: &Programs, look: &Look<'a>) -> Result<Vec<Compute<'a>>, RuntimeError> {
+    let mut computes = Vec::new();
+    for pass in &look.program.reflection().passes {
+        if let PassDecl::Compute { entry, over } = &pass.declared {
+            let program = programs.get(&look.root, &format!("{}.{}", pass.instance, pass.name))?;
+            let entry = program.reflection().entry_points.first().map_or(entry, |e| &e.name).clone();
+            computes.push(Compute {
+                entry,
+                over: *over,
+                look: Look { program, ..look.clone() },
+            });
+        }
+    }
+    Ok(computes)
+}
