@@ -1,5 +1,5 @@
 //! Errors of linking, of targets, of limits and of the library's folders. Whole texts: a change of a place or word must be meant.
-#![allow(clippy::unwrap_used, clippy::expect_used)] // a test may fail where it stands
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod common;
 

@@ -106,12 +106,11 @@ fn choose<'a>(module: &'a Module, target: Target, name: Option<&str>) -> Result<
 
 /// Whether the target can express what the module needs.
 fn supported(module: &Module, target: Target) -> Result<(), Diagnostic> {
-    #[allow(clippy::result_large_err)] // naga's own error
-    let verdict = |capabilities| Validator::new(ValidationFlags::all(), capabilities).validate(module);
-    let Err(error) = verdict(target.capabilities()) else {
+    let validator = |capabilities| Validator::new(ValidationFlags::all(), capabilities);
+    let Err(error) = validator(target.capabilities()).validate(module) else {
         return Ok(());
     };
-    let missing = missing(target.capabilities(), |set| verdict(set).is_ok());
+    let missing = missing(target.capabilities(), |set| validator(set).validate(module).is_ok());
     let names: Vec<String> = missing.iter_names().map(|(name, _)| format!("`{name}`")).collect();
     let mut diagnostic = unsupported(target, &readable(&causes(&error.into_inner()), module));
     if !names.is_empty() {

@@ -4,8 +4,9 @@
 //! where each item stands and which of its words refer to module-scope names, so that the authors' own text can be
 //! linked. Of text that naga refuses it may say anything, but never panics.
 
-use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::ops::Range;
+
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::lex::{Kind, Token, lex};
 

@@ -219,14 +219,11 @@ fn validation_error(
     diagnostic.into()
 }
 
-/// A file and bytes of its text.
-pub type PlaceIn<'a> = (&'a Arc<SourceFile>, Range<usize>);
-
 /// Adds the places of naga's error, the innermost first, in words for people.
 pub fn labelled<'a>(
     mut diagnostic: Diagnostic,
     error: &naga::WithSpan<naga::valid::ValidationError>,
-    locate: &dyn Fn(Range<usize>) -> Option<PlaceIn<'a>>,
+    locate: &super::capabilities::Locate<'a>,
 ) -> Diagnostic {
     let mut spans: Vec<_> = error.spans().collect();
     spans.sort_by_key(|(span, _)| span.to_range().map_or(0, |range| range.len()));
