@@ -16,16 +16,44 @@ fn module(manifest: &str, wgsl: &str) -> String {
     small().module("value", "m", manifest, wgsl).error(RECIPE)
 }
 
+/// Two modules that are right by themselves, and cannot be in one shader: a pipeline has one block of immediates.
+#[test]
+fn sw0501_linked_invalid() {
+    let immediate = |name: &str| format!("var<immediate> {name}: f32;\n\nfn value(x: f32) -> f32 {{\n    return x + {name};\n}}\n");
+    let manifest = |name: &str| format!(r#"capabilities: ["IMMEDIATES"], resources: {{"{name}": (kind: Host("{name}"))}}"#);
+    let texts = small()
+        .module("value", "one", &manifest("first"), &immediate("first"))
+        .module("value", "two", &manifest("second"), &immediate("second"))
+        .module(
+            "pass",
+            "sum",
+            r#"slots: {"all": (interface: "value", arity: List)}, resources: {"out": (kind: Host("out"))}"#,
+            "var<storage, read_write> out: array<f32>;\n\n@compute @workgroup_size(1)\nfn main() {\n    out[0] = value(out[1]);\n}\n",
+        );
+    assert_text(
+        &texts.error("(module: \"sum\", fill: {\"all\": [\"one\", \"two\"]})"),
+        r#"
+error[SW0501]: Entry point main at Compute is invalid: More than 1 immediate data variable is used
+  --> value/two/two.wgsl:1:1
+  |
+1 | var<immediate> second: f32;
+  | ^^^^^^^^^^^^^^^^^^^^^^^^^^^ this global variable
+  |
+  = the modules are valid each by itself, but not linked together
+"#,
+    );
+}
+
 /// Derivatives exist in fragment stages only: the module is right by itself, the compute pass around it makes it wrong.
 #[test]
-fn sw0501_stage_of_a_function() {
+fn sw0503_stage_of_a_function() {
     assert_text(
         &module(
             "",
             "fn slope(x: f32) -> f32 {\n    return dpdx(x);\n}\n\nfn value(x: f32) -> f32 {\n    return slope(x) * 2.0;\n}\n",
         ),
         r#"
-error[SW0501]: a derivative in the compute stage `main`: only fragment stages have that
+error[SW0503]: a derivative in the compute stage `main`: only fragment stages have that
   --> value/m/m.wgsl:2:12
   |
 2 |     return dpdx(x);
@@ -43,7 +71,7 @@ error[SW0501]: a derivative in the compute stage `main`: only fragment stages ha
 
 /// A barrier waits for a workgroup, which a vertex stage does not have.
 #[test]
-fn sw0501_barrier() {
+fn sw0503_barrier() {
     let texts = small()
         .module("value", "m", "", "fn value(x: f32) -> f32 {\n    if x > 1.0 {\n        workgroupBarrier();\n    }\n    return x;\n}\n")
         .module(
@@ -55,7 +83,7 @@ fn sw0501_barrier() {
     assert_text(
         &texts.error("(module: \"draw\", fill: {\"value\": \"m\"})"),
         r#"
-error[SW0501]: a barrier in the vertex stage `main`: only compute stages have that
+error[SW0503]: a barrier in the vertex stage `main`: only compute stages have that
   --> value/m/m.wgsl:3:9
   |
 3 |         workgroupBarrier();

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use serde_json::{Value as Json, json};
+use shadewright::compiler::diagnostics::codes;
 use shadewright::compiler::manifest::{Arity, Filling, Node};
 use shadewright::compiler::{Module, Recipe, Report};
 
@@ -207,10 +208,7 @@ pub fn links(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
 
 /// A function that takes screen-space derivatives (any `textureSample`) links, but only fragments can call it, no probe.
 fn only_for_fragments(report: &Report) -> bool {
-    report
-        .diagnostics
-        .iter()
-        .all(|diagnostic| diagnostic.message.contains("forbidden at this stage"))
+    report.diagnostics.iter().all(|diagnostic| diagnostic.code == codes::WRONG_STAGE)
 }
 
 /// A module with its slots' defaults; slots that need a module and have no default get the first that fits.

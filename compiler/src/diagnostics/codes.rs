@@ -72,6 +72,7 @@ codes! {
 
     LINKED_INVALID = "SW0501", "The linked module does not pass validation.";
     CAPABILITY_UNDECLARED = "SW0502", "A module uses a capability that its manifest does not declare.";
+    WRONG_STAGE = "SW0503", "A module uses something that the stage of its tree does not have, such as derivatives outside fragments.";
 
     UNSUPPORTED_BY_TARGET = "SW0601", "The target language lacks something that the shader needs.";
     BACKEND_FAILURE = "SW0602", "naga's writer for the target failed.";

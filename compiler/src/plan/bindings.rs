@@ -85,7 +85,10 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
             if !reached.contains(&(home, handle)) || is_params(unit, handle) {
                 continue;
             }
-            let bound = !matches!(global.space, AddressSpace::Private | AddressSpace::WorkGroup);
+            let bound = matches!(
+                global.space,
+                AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Handle
+            );
             // Only a text that is complete in itself brings bindings.
             let mut binding = global.binding.as_ref().map(|b| (b.group, b.binding));
             if bound && binding.is_none() {

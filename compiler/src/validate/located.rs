@@ -17,7 +17,7 @@ pub(crate) fn located(plan: &Plan, module: &Module, error: &WithSpan<ValidationE
         let entry = module.entry_points.iter().find(|e| e.stage == *stage && e.name == *name);
         if let Some((what, needed, span)) = entry.and_then(|e| foreign(module, &e.function, *stage)) {
             let mut diagnostic = Diagnostic::new(
-                codes::LINKED_INVALID,
+                codes::WRONG_STAGE,
                 format!("{what} in the {} stage `{name}`: only {needed} stages have that", word(*stage)),
             );
             if let Some((file, range)) = span.to_range().and_then(locate) {
