@@ -48,7 +48,7 @@ fn at(picture: &Picture, (column, row): (u32, u32)) -> f64 {
     picture.grey(column, row)
 }
 
-/// Catches blending that is premultiplied, front to back, in the order of the file, into the depth buffer, or over what it does not cover; all
+/// Catches blending that is premultiplied, front to back, in the order of the file, or over what hides it; all
 /// sums are exact, in half floats, too.
 #[test]
 fn alpha_blend_lies_over_what_is_behind_back_to_front() {

@@ -97,14 +97,24 @@ fn slivers() -> Draw {
 fn a_hostile_scene_is_finite() {
     for blend in ["false", "true"] {
         let file = parse(&HOSTILE.replace("BLEND", blend));
-        for (eye, target) in [
-            ("(0.1, 0.6, 0.3)", "(0, 0, -2)"),
+        for (eye, target, fov) in [
+            ("(0.1, 0.6, 0.3)", "(0, 0, -2)", "120"),
             // Inside the ball, and in the floor's plane, and from below.
-            ("(-1.1, 0.5, -1)", "(-1, 0.5, -1)"),
-            ("(-1.9, 0, 1.9)", "(0, 0, 0)"),
-            ("(0.3, -0.5, 0.2)", "(0, 0, -0.5)"),
+            ("(-1.1, 0.5, -1)", "(-1, 0.5, -1)", "120"),
+            ("(-1.9, 0, 1.9)", "(0, 0, 0)", "120"),
+            ("(0.3, -0.5, 0.2)", "(0, 0, -0.5)", "120"),
+            // Into the mirror below, so near that normal and half vector are one in 32 bits: a light stands at the eye.
+            ("(0.2, 0.5, 0.4)", "(0.2, 0, 0.401)", "1"),
         ] {
-            let mut frame = frame(&set(&file, &[("camera.eye", eye), ("camera.target", target)]));
+            let mut frame = frame(&set(
+                &file,
+                &[
+                    ("camera.eye", eye),
+                    ("camera.target", target),
+                    ("camera.fov", fov),
+                    ("lights[eye].fields.position", eye),
+                ],
+            ));
             frame.draws.push(slivers());
             let picture = hdr(&frame);
             assert_eq!(picture.bad(), 0, "from {eye}, blended {blend}");

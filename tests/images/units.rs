@@ -2,7 +2,7 @@
 
 use crate::view::{parse, picture, read, set};
 
-/// A glossy ball and a box on a floor between a shadowed lamp and the sun, all lengths times `k` and the lamp's intensity times its square.
+/// A glossy ball and a box on a floor between two lamps that cast shadows and the sun, all lengths times `k` and the lamp's intensity times its square.
 fn scene(k: f64, lamps: &[&str], objects: &[&str]) -> String {
     let m = |metres: f64| format!("{:?}", metres * k);
     let object = |name: &&str| match *name {
@@ -22,17 +22,18 @@ fn scene(k: f64, lamps: &[&str], objects: &[&str]) -> String {
             m(2.0),
             m(1.5),
             400.0 * k * k,
-            // 0.01 m, but within the limits of the parameter.
+            // A thousand times it is still within the limits of the parameter.
             m(0.05),
             m(0.002),
         ),
         "cool" => format!(
-            r#"(module: "point", fields: {{"position": ({}, {}, {}), "intensity": {:?}, "size": {}}}),"#,
+            r#"(module: "point", fields: {{"position": ({}, {}, {}), "intensity": {:?}, "size": {}}}, visibility: (module: "cube-map", params: {{"bias": {}}})),"#,
             m(-2.0),
             m(1.5),
             m(0.5),
             150.0 * k * k,
             m(0.05),
+            m(0.002),
         ),
         _ => r#"(module: "directional", fields: {"direction": (1, -2, 0.5), "illuminance": 30}),"#.to_owned(),
     };
