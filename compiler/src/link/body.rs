@@ -1,9 +1,13 @@
 //! Cloning a function: the living expressions, in their order, with every reference outward patched.
 
-use naga::{Block, Expression, Function, FunctionArgument, FunctionResult, Handle, LocalVariable, Range, Span, Statement, SwitchCase};
+use naga::{
+    Block, Expression, Function, FunctionArgument, FunctionResult, Handle, LocalVariable, MathFunction, Range, Span, Statement, SwitchCase,
+};
 
 use super::ir::Linker;
-use crate::plan::{Choice, Planned, can_go, choice, is_dead_store, is_params, reachable, struct_of};
+use crate::plan::{
+    Choice, Planned, can_go, choice, expression_operands_mut, is_dead_store, is_params, reachable, statement_operands_mut, struct_of,
+};
 
 type Exprs = Vec<Option<Handle<Expression>>>;
 
@@ -87,15 +91,11 @@ impl Linker<'_> {
         done
     }
 
-    /// An expression with its operands and references in the output. Every variant is named: a new one must not slip through.
+    /// An expression with its operands and references in the output.
     fn expression(&mut self, clone: &mut Clone, out: &mut Function, expression: &Expression) -> Expression {
         let home = clone.home;
         let mut patched = expression.clone();
         match &mut patched {
-            Expression::Literal(_)
-            | Expression::FunctionArgument(_)
-            | Expression::RayQueryProceedResult
-            | Expression::SubgroupBallotResult => {}
             Expression::Constant(constant) => *constant = self.constant(home, *constant),
             Expression::Override(o) => *o = self.override_(home, *o),
             Expression::ZeroValue(ty) => *ty = self.ty(home, *ty),
@@ -111,7 +111,6 @@ impl Linker<'_> {
                     });
                 }
                 *ty = self.ty(home, *ty);
-                components.iter_mut().for_each(|c| *c = clone.get(*c));
             }
             Expression::GlobalVariable(global) => {
                 let unit = &self.plan.homes[home].unit;
@@ -123,102 +122,15 @@ impl Linker<'_> {
             }
             Expression::LocalVariable(local) => *local = self.local(clone, out, *local),
             Expression::CallResult(function) => *function = self.callee(clone, *function),
-            Expression::AccessIndex { base, index } => {
-                *index = self.member_index(clone, *base, *index);
-                *base = clone.get(*base);
-            }
-            Expression::Access { base, index } => {
-                *base = clone.get(*base);
-                *index = clone.get(*index);
-            }
-            Expression::Splat { value: h, .. }
-            | Expression::Swizzle { vector: h, .. }
-            | Expression::Load { pointer: h }
-            | Expression::Unary { expr: h, .. }
-            | Expression::Derivative { expr: h, .. }
-            | Expression::As { expr: h, .. }
-            | Expression::Relational { argument: h, .. }
-            | Expression::ArrayLength(h)
-            | Expression::RayQueryVertexPositions { query: h, .. }
-            | Expression::RayQueryGetIntersection { query: h, .. } => *h = clone.get(*h),
-            Expression::ImageSample {
-                image,
-                sampler,
-                coordinate,
-                array_index,
-                offset,
-                level,
-                depth_ref,
-                gather: _,
-                clamp_to_edge: _,
-            } => {
-                for h in [image, sampler, coordinate]
-                    .into_iter()
-                    .chain(array_index)
-                    .chain(offset)
-                    .chain(depth_ref)
-                {
-                    *h = clone.get(*h);
-                }
-                match level {
-                    naga::SampleLevel::Auto | naga::SampleLevel::Zero => {}
-                    naga::SampleLevel::Exact(h) | naga::SampleLevel::Bias(h) => *h = clone.get(*h),
-                    naga::SampleLevel::Gradient { x, y } => {
-                        *x = clone.get(*x);
-                        *y = clone.get(*y);
-                    }
-                }
-            }
-            Expression::ImageLoad {
-                image,
-                coordinate,
-                array_index,
-                sample,
-                level,
-            } => {
-                for h in [image, coordinate].into_iter().chain(array_index).chain(sample).chain(level) {
-                    *h = clone.get(*h);
-                }
-            }
-            Expression::ImageQuery { image, query } => {
-                *image = clone.get(*image);
-                if let naga::ImageQuery::Size { level: Some(level) } = query {
-                    *level = clone.get(*level);
-                }
-            }
-            Expression::Binary { left, right, .. } => {
-                *left = clone.get(*left);
-                *right = clone.get(*right);
-            }
-            Expression::Select { condition, accept, reject } => {
-                for h in [condition, accept, reject] {
-                    *h = clone.get(*h);
-                }
-            }
+            Expression::AccessIndex { base, index } => *index = self.member_index(clone, *base, *index),
             Expression::Math {
-                arg,
-                arg1,
-                arg2,
-                arg3,
-                fun,
-            } => {
-                if matches!(fun, naga::MathFunction::Modf | naga::MathFunction::Frexp) {
-                    self.result_types(home);
-                }
-                for h in [arg].into_iter().chain(arg1).chain(arg2).chain(arg3) {
-                    *h = clone.get(*h);
-                }
-            }
-            Expression::CooperativeLoad { data, .. } => {
-                data.pointer = clone.get(data.pointer);
-                data.stride = clone.get(data.stride);
-            }
-            Expression::CooperativeMultiplyAdd { a, b, c } => {
-                for h in [a, b, c] {
-                    *h = clone.get(*h);
-                }
-            }
+                fun: MathFunction::Modf | MathFunction::Frexp,
+                ..
+            } => self.result_types(home),
+            // Nothing but operands. A kind that naga adds stops the compiler at the visitor below.
+            _ => {}
         }
+        expression_operands_mut(&mut patched, &mut |h| *h = clone.get(*h));
         patched
     }
 
@@ -372,22 +284,10 @@ impl Linker<'_> {
             }
             other => other.clone(),
         };
-        match &mut patched {
-            Statement::Call {
-                function,
-                arguments,
-                result,
-            } => {
-                *function = self.callee(clone, *function);
-                arguments.iter_mut().chain(result).for_each(|h| *h = clone.get(*h));
-            }
-            Statement::Store { pointer, value } => {
-                *pointer = clone.get(*pointer);
-                *value = clone.get(*value);
-            }
-            Statement::Return { value } => value.iter_mut().for_each(|h| *h = clone.get(*h)),
-            other => patch_operands(other, &|h| clone.get(h)),
+        if let Statement::Call { function, .. } = &mut patched {
+            *function = self.callee(clone, *function);
         }
+        statement_operands_mut(&mut patched, &mut |h| *h = clone.get(*h));
         Some(patched)
     }
 }
@@ -408,59 +308,4 @@ fn flush(emitted: &mut Option<Emitted>, block: &mut Block) {
 /// Expressions that are there from the start of the function: naga refuses to emit them.
 fn needs_no_emit(expression: &Expression) -> bool {
     expression.needs_pre_emit()
-}
-
-/// Operands of statements without blocks other than calls, stores and returns.
-fn patch_operands(statement: &mut Statement, get: &dyn Fn(Handle<Expression>) -> Handle<Expression>) {
-    let patch = |h: &mut Handle<Expression>| *h = get(*h);
-    match statement {
-        Statement::ImageStore {
-            image,
-            coordinate,
-            array_index,
-            value,
-        } => {
-            [image, coordinate, value].into_iter().chain(array_index).for_each(patch);
-        }
-        Statement::Atomic {
-            pointer,
-            fun,
-            value,
-            result,
-        } => {
-            [pointer, value].into_iter().chain(result).for_each(patch);
-            if let naga::AtomicFunction::Exchange { compare: Some(compare) } = fun {
-                patch(compare);
-            }
-        }
-        Statement::ImageAtomic {
-            image,
-            coordinate,
-            array_index,
-            fun,
-            value,
-        } => {
-            [image, coordinate, value].into_iter().chain(array_index).for_each(patch);
-            if let naga::AtomicFunction::Exchange { compare: Some(compare) } = fun {
-                patch(compare);
-            }
-        }
-        Statement::WorkGroupUniformLoad { pointer, result } => [pointer, result].into_iter().for_each(patch),
-        Statement::SubgroupBallot { result, predicate } => [result].into_iter().chain(predicate).for_each(patch),
-        Statement::SubgroupGather { mode, argument, result } => {
-            [argument, result].into_iter().for_each(patch);
-            match mode {
-                naga::GatherMode::BroadcastFirst | naga::GatherMode::QuadSwap(_) => {}
-                naga::GatherMode::Broadcast(h)
-                | naga::GatherMode::Shuffle(h)
-                | naga::GatherMode::ShuffleDown(h)
-                | naga::GatherMode::ShuffleUp(h)
-                | naga::GatherMode::ShuffleXor(h)
-                | naga::GatherMode::QuadBroadcast(h) => patch(h),
-            }
-        }
-        Statement::SubgroupCollectiveOperation { argument, result, .. } => [argument, result].into_iter().for_each(patch),
-        Statement::CooperativeStore { target, data } => [target, &mut data.pointer, &mut data.stride].into_iter().for_each(patch),
-        _ => {}
-    }
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use naga::{Binding, Block, Expression, Handle, ShaderStage, Statement, Type, TypeInner};
 
-use super::operands::{expression_operands, operands};
+use super::operands::{expression_operands, statement_operands};
 use super::{Body, Choice, Home, Plan, Planned, Structs, can_go, choice, is_dead_store, reachable, struct_of};
 
 /// Finds out what is alive and writes it into the plan.
@@ -358,7 +358,7 @@ impl<'a> Walker<'a> {
                 arguments.iter().for_each(|&a| self.read(a));
                 result.iter().for_each(|&r| self.read(r));
             }
-            other => operands(other, &mut |h| self.read(h)),
+            other => statement_operands(other, &mut |&h| self.read(h)),
         }
     }
 
@@ -447,7 +447,7 @@ impl<'a> Walker<'a> {
                     self.stack.extend(arguments);
                 }
             }
-            other => expression_operands(other, &mut |h| self.stack.push(h)),
+            other => expression_operands(other, &mut |&h| self.stack.push(h)),
         }
     }
 }

@@ -24,6 +24,7 @@ use crate::resolve::{Instances, Tree};
 pub use bindings::{Block, GROUPS, PlannedGlobal, declared, declaring, is_instances, is_params};
 pub use branches::{Choice, choice, leaves, reachable};
 pub use names::joined;
+pub use operands::{expression_operands_mut, statement_operands_mut};
 pub use pure::can_go;
 pub use reach::{Roots, plan, roomy};
 pub use stores::{is_dead_store, struct_of};
