@@ -5,6 +5,7 @@
 mod display;
 mod flags;
 mod hostile;
+mod maps;
 #[path = "../oracle/mod.rs"]
 mod oracle;
 mod plane;
