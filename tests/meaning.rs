@@ -134,6 +134,63 @@ type Case = (&'static str, &'static str, &'static str, fn(f32) -> f32);
 /// Body of `value` over the helpers, and what it gives.
 const CASES: &[Case] = &[
     (
+        "act among the arguments of a call of nothing",
+        NONE,
+        "nothing(act(x)); nothing(1.0); return x + count;",
+        |x| x + x,
+    ),
+    (
+        "two names of an act",
+        NONE,
+        "let k = act(x); let m = k; let n = m + 1.0; return count;",
+        |x| x,
+    ),
+    (
+        "calls in conditions",
+        NONE,
+        "var y = x; while pure(y) < 12.0 && act(1.0) > 0.0 { y += 1.0; } return y + count;",
+        |x| {
+            let n = (4.0 - x).ceil().max(0.0);
+            x + n + n
+        },
+    ),
+    (
+        "act in a switch and a discarded comparison",
+        NONE,
+        "_ = act(x) > 1.0; switch u32(act(1.0)) { case 2u { return count; } default { return 0.0; } }",
+        |x| x + 1.0,
+    ),
+    (
+        "constant loop within a branch that leaves",
+        YES,
+        "var y = x; loop { if params.flag { y += 1.0; if y > 4.0 { break; } continue; } y = other(y); } return y;",
+        |x| x + (4.0 - x).floor() + 1.0,
+    ),
+    (
+        "let of a dead chain beside an act",
+        NONE,
+        "let a = other(x); let b = a + 1.0; let c = b * act(x); return count;",
+        |x| x,
+    ),
+    (
+        "dead argument that reads a let",
+        NONE,
+        "let a = other(x); let b = a + 1.0; let s = S(x, b, vec2f(a)); return s.a;",
+        |x| x,
+    ),
+    (
+        "infinite loop with break if true",
+        YES,
+        "var y = x; loop { y += 1.0; continuing { y += 2.0; break if params.flag; } } return y;",
+        |x| x + 3.0,
+    ),
+    (
+        "array of a struct by value",
+        NONE,
+        "var s = array<S, 2>(make(x), S(1.0, x, vec2f(2.0))); let k = s; return k[1].b + k[0].a + count;",
+        |x| x + x * 5.0 + x,
+    ),
+    (
         "act in the index of a dead store",
         NONE,
         "var s: array<S, 2>; s[next()].b = x; s[0].a = x; return s[0].a + count;",
@@ -609,6 +666,8 @@ fn helper(x: f32) -> f32 {
 }
 fn make(x: f32) -> S {
     return S(other(x), act(x), vec2f(x));
+}
+fn nothing(x: f32) {
 }
 fn peek() -> f32 {
     return count;
