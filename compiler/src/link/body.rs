@@ -223,7 +223,7 @@ impl Linker<'_> {
             let ir = &self.plan.homes[clone.home].unit.ir;
             let laid_open = match statement {
                 Statement::Block(inner) => Some(inner),
-                Statement::If { condition, accept, reject } => match choice(ir, clone.source, *condition) {
+                Statement::If { condition, accept, reject } => match choice(ir, clone.source, *condition, accept, reject) {
                     Choice::Accept => Some(accept),
                     Choice::Reject => Some(reject),
                     Choice::Open => None,

@@ -7,7 +7,7 @@ use std::ops::Range;
 use naga::{Block, Handle, Span, Statement};
 
 use crate::parse::lex::{Kind, Token};
-use crate::parse::scan::{Item, closing};
+use crate::parse::scan::{Item, ItemKind, closing};
 use crate::parse::{Origin, Unit};
 use crate::plan::{Choice, Plan, Planned, can_go, choice, is_dead_store, leaves, reachable};
 
@@ -69,7 +69,7 @@ impl Dead<'_> {
         match statement {
             Statement::Block(inner) => self.block(function, inner),
             Statement::If { condition, accept, reject } => {
-                let choice = choice(&unit.ir, function, *condition);
+                let choice = choice(&unit.ir, function, *condition, accept, reject);
                 if choice != Choice::Open {
                     self.branch(span, choice);
                 }
@@ -110,7 +110,8 @@ impl Dead<'_> {
         let first = self.token_at(span)?;
         let name = unit.ir.functions[callee].name.as_deref()?;
         let before = self.tokens.get(first.checked_sub(1)?)?;
-        if self.word(first) == name && (before.is(b';') || before.is(b'{') || before.is(b'}')) {
+        let starts = before.is(b';') || before.is(b'{') || before.is(b'}') || self.starts_for(first);
+        if self.word(first) == name && starts {
             self.remove_statement(first);
         }
         Some(())
@@ -127,15 +128,29 @@ impl Dead<'_> {
         self.tokens.get(at).map_or("", |t| &self.text[t.range()])
     }
 
-    /// From the statement's first token to its semicolon.
+    /// Whether a statement is the first of a `for`'s header.
+    fn starts_for(&self, first: usize) -> bool {
+        first >= 2 && self.tokens[first - 1].is(b'(') && self.word(first - 2) == "for"
+    }
+
+    /// From the statement's first token to its semicolon. In the header of a `for` the marks stay.
     fn remove_statement(&mut self, first: usize) {
+        let start = self.tokens[first].start as usize;
         let mut depth = 0usize;
         for at in first..self.item.body.end {
             match self.tokens[at].kind {
+                Kind::Mark(b')') if depth == 0 => {
+                    self.ranges.push(start..self.tokens[at].start as usize);
+                    return;
+                }
+                Kind::Mark(b';') if depth == 0 && self.starts_for(first) => {
+                    self.ranges.push(start..self.tokens[at].start as usize);
+                    return;
+                }
                 Kind::Mark(b'(' | b'[' | b'{') => depth += 1,
                 Kind::Mark(b')' | b']' | b'}') => depth = depth.saturating_sub(1),
                 Kind::Mark(b';') if depth == 0 => {
-                    self.remove_lines(self.tokens[first].start as usize..self.tokens[at].end as usize);
+                    self.remove_lines(start..self.tokens[at].end as usize);
                     return;
                 }
                 _ => {}
@@ -151,8 +166,12 @@ impl Dead<'_> {
             self.ranges.push(range);
             return;
         }
+        let before = self.tokens.partition_point(|t| t.end as usize <= range.start);
+        let before = self.tokens[..before].last().map_or(0, |t| t.end as usize);
+        // A line that begins like a comment may stand inside a longer one.
+        let in_block = self.text[before..range.start].contains("/*");
         let mut first = line;
-        while first > 0 {
+        while first > 0 && !in_block {
             let previous = self.text[..first - 1].rfind('\n').map_or(0, |n| n + 1);
             if !self.text[previous..first].trim_start().starts_with("//") {
                 break;
@@ -226,6 +245,11 @@ impl Dead<'_> {
         let mut depth = 0usize;
         for at in end + 1..self.item.body.end {
             match self.tokens[at].kind {
+                // Behind a `continue` it still runs, and it is there in the IR.
+                Kind::Word if depth == 0 && self.word(at) == "continuing" => {
+                    self.ranges.push(self.tokens[end].end as usize..self.tokens[at].start as usize);
+                    return Some(());
+                }
                 Kind::Mark(b'{') => depth += 1,
                 Kind::Mark(b'}') if depth == 0 => {
                     let start = self.tokens[end].end as usize;
@@ -249,7 +273,7 @@ impl Dead<'_> {
         let plan = self.plan;
         let unit = &plan.homes[self.planned.home].unit;
         for reference in self.item.references.iter().filter(|r| self.item.body.contains(&r.token)) {
-            let name = &self.text[self.tokens[reference.token].range()];
+            let name = unaliased(unit, &self.text[self.tokens[reference.token].range()]);
             let declared = match unit.origin(name) {
                 Some(Origin::Interface(category)) => plan.interface_home(category),
                 Some(Origin::Own) => Some(plan.homes[self.planned.home].first),
@@ -335,7 +359,8 @@ impl Dead<'_> {
                 let Some(end) = (at..self.item.body.end).find(|&t| self.tokens[t].is(b';')) else {
                     continue;
                 };
-                let calls = (at..end).any(|t| self.calls(t));
+                let value = &self.text[self.tokens[at].end as usize..self.tokens[end].start as usize];
+                let calls = value.contains("&&") || value.contains("||") || (at..end).any(|t| self.calls(t));
                 if !calls && (phony || !self.is_read(at + 1, end) || self.is_unneeded(function, at + 1, end)) {
                     self.remove_statement(at);
                 }
@@ -389,7 +414,21 @@ impl Dead<'_> {
     }
 }
 
+/// What `alias A = S;` of a module stands for; other names as they are.
+fn unaliased<'u>(unit: &'u Unit, mut name: &'u str) -> &'u str {
+    // An alias cannot lead to itself: naga has accepted the unit.
+    while let Some(item) = unit.scan.item(name).filter(|i| i.kind == ItemKind::Alias && i.tokens.len() == 5) {
+        name = &unit.file.text[unit.scan.tokens[item.tokens.start + 3].range()];
+    }
+    name
+}
+
+/// Whether a `<` behind this word opens a template list: of what can stand in an expression, by the whole name, since a
+/// variable may be called `material`.
 fn takes_template(word: &str) -> bool {
-    let kinds = ["array", "vec2", "vec3", "vec4", "mat", "ptr", "atomic", "bitcast", "texture"];
-    kinds.iter().any(|k| word.starts_with(k))
+    let size = |s: &str| matches!(s, "2" | "3" | "4");
+    let matrix = |s: &str| s.split_once('x').is_some_and(|(columns, rows)| size(columns) && size(rows));
+    matches!(word, "array" | "bitcast" | "ptr" | "atomic")
+        || word.strip_prefix("vec").is_some_and(size)
+        || word.strip_prefix("mat").is_some_and(matrix)
 }

@@ -14,7 +14,23 @@ pub enum Choice {
 }
 
 /// The side that a condition takes. naga has folded what was constant when it parsed the unit.
-pub fn choice(ir: &naga::Module, function: &naga::Function, condition: Handle<Expression>) -> Choice {
+///
+/// The condition of a `while` or `for` stays open, and so does the branch that naga makes of `a && f()`: the text has none
+/// there that could go.
+pub fn choice(ir: &naga::Module, function: &naga::Function, condition: Handle<Expression>, accept: &Block, reject: &Block) -> Choice {
+    if accept.is_empty() && matches!(**reject, [Statement::Break]) {
+        return Choice::Open;
+    }
+    let is_lowered = match accept.last() {
+        Some(&Statement::Store { pointer, .. }) => match function.expressions[pointer] {
+            Expression::LocalVariable(local) => function.local_variables[local].name.is_none(),
+            _ => false,
+        },
+        _ => false,
+    };
+    if is_lowered {
+        return Choice::Open;
+    }
     let literal = match function.expressions[condition] {
         Expression::Literal(literal) => Some(literal),
         Expression::Constant(constant) => match ir.global_expressions[ir.constants[constant].init] {
@@ -49,7 +65,7 @@ pub fn leaves(ir: &naga::Module, function: &naga::Function, statement: &Statemen
     match statement {
         Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue => true,
         Statement::Block(inner) => last_leaves(inner),
-        Statement::If { condition, accept, reject } => match choice(ir, function, *condition) {
+        Statement::If { condition, accept, reject } => match choice(ir, function, *condition, accept, reject) {
             Choice::Accept => last_leaves(accept),
             Choice::Reject => last_leaves(reject),
             Choice::Open => false,

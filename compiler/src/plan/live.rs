@@ -13,6 +13,7 @@ use super::{Body, Choice, Home, Plan, Planned, Structs, can_go, choice, is_dead_
 
 /// Finds out what is alive and writes it into the plan.
 pub fn analyse(plan: &mut Plan) {
+    keep_local_constants(plan);
     loop {
         settle(plan);
         if !keep_one_member(plan) {
@@ -20,6 +21,28 @@ pub fn analyse(plan: &mut Plan) {
         }
     }
     drop_unneeded(plan);
+}
+
+/// A `const` inside a function leaves no trace in the IR, but stays in the text: its structs keep all their members.
+fn keep_local_constants(plan: &mut Plan) {
+    let mut kept = HashSet::default();
+    for planned in &plan.functions {
+        let unit = &plan.homes[planned.home].unit;
+        let Some(item) = unit.scan.item(planned.source_name(&plan.homes)) else {
+            continue;
+        };
+        let word = |at: usize| &unit.file.text[unit.scan.tokens[at].range()];
+        for reference in item.references.iter().filter(|r| item.body.contains(&r.token)) {
+            let mut statement = (item.body.start..reference.token).rev().take_while(|&at| word(at) != ";");
+            if !statement.any(|at| word(at) == "const") {
+                continue;
+            }
+            for (&ty, _) in unit.structs.iter().filter(|(_, key)| key.name == word(reference.token)) {
+                used_structs(&plan.structs, &unit.ir, planned.home, ty, &mut kept);
+            }
+        }
+    }
+    kept.into_iter().for_each(|id| plan.structs.list[id].fixed = true);
 }
 
 /// Takes out the functions that only dead calls reached, puts the others into the order in which living calls reach them
@@ -77,7 +100,7 @@ fn living_calls(plan: &Plan, planned: &Planned, function: &naga::Function, block
             }
             Statement::Block(inner) => living_calls(plan, planned, function, inner, called),
             Statement::If { condition, accept, reject } => {
-                let choice = choice(&unit.ir, function, *condition);
+                let choice = choice(&unit.ir, function, *condition, accept, reject);
                 if choice != Choice::Reject {
                     living_calls(plan, planned, function, accept, called);
                 }
@@ -127,11 +150,12 @@ fn settle(plan: &mut Plan) {
                 params: &mut plan.live_params,
                 live: vec![false; function.expressions.len()],
                 read: vec![false; function.expressions.len()],
+                reached: vec![false; function.expressions.len()],
                 stack: Vec::new(),
                 changed: false,
             };
-            walker.keep_lets_with_calls();
             walker.block(&function.body);
+            walker.keep_lets_with_calls();
             changed |= walker.changed;
             let (live, called) = (walker.live, walker.called);
             plan.functions[index].live = live;
@@ -201,6 +225,16 @@ fn keep_one_member(plan: &mut Plan) -> bool {
         for ty in types.chain(function.local_variables.iter().map(|(_, l)| l.ty)) {
             used_structs(&plan.structs, &unit.ir, planned.home, ty, &mut used);
         }
+        for (handle, expression) in function.expressions.iter() {
+            let ty = match *expression {
+                Expression::GlobalVariable(global) => unit.ir.global_variables[global].ty,
+                Expression::Compose { ty, .. } | Expression::ZeroValue(ty) => ty,
+                _ => continue,
+            };
+            if planned.live[handle.index()] {
+                used_structs(&plan.structs, &unit.ir, planned.home, ty, &mut used);
+            }
+        }
     }
     let mut changed = false;
     let mut used: Vec<usize> = used.into_iter().collect();
@@ -254,15 +288,18 @@ struct Walker<'a> {
     live: Vec<bool>,
     /// Its value is needed, not only its address for a store.
     read: Vec<bool>,
+    /// Results of statements, and expressions, that stand in branches that may be taken.
+    reached: Vec<bool>,
     stack: Vec<Handle<Expression>>,
     changed: bool,
 }
 
 impl<'a> Walker<'a> {
     /// Something that acts beside giving a value stays where it stands, and so does the `let` around it, whoever reads it.
+    /// Comes behind the walk over the statements, which finds the pure calls that such a `let` also holds.
     fn keep_lets_with_calls(&mut self) {
         for &named in self.function.named_expressions.keys() {
-            if self.holds_action(named) {
+            if self.reached[named.index()] && self.holds_action(named) {
                 self.read(named);
             }
         }
@@ -273,8 +310,19 @@ impl<'a> Walker<'a> {
         let Some(span) = self.function.expressions.get_span(handle).to_range() else {
             return false;
         };
+        // `a && f()` is a branch in the IR, which stays with all that it calls.
+        let text = self.homes[self.planned.home]
+            .unit
+            .composed
+            .text
+            .get(span.clone())
+            .unwrap_or_default();
+        if text.contains("&&") || text.contains("||") {
+            return true;
+        }
         self.results.iter().any(|(result, place)| {
-            let inside = result.index() <= handle.index() && span.start <= place.start && place.end <= span.end;
+            let inside =
+                self.reached[result.index()] && result.index() <= handle.index() && span.start <= place.start && place.end <= span.end;
             inside
                 && match self.function.expressions[*result] {
                     Expression::CallResult(callee) => !self.can_go(callee),
@@ -299,15 +347,11 @@ impl<'a> Walker<'a> {
 
     fn statement(&mut self, statement: &'a Statement) {
         match statement {
-            Statement::Emit(_)
-            | Statement::Break
-            | Statement::Continue
-            | Statement::Kill
-            | Statement::ControlBarrier(_)
-            | Statement::MemoryBarrier(_) => {}
+            Statement::Emit(range) => range.clone().for_each(|h| self.reached[h.index()] = true),
+            Statement::Break | Statement::Continue | Statement::Kill | Statement::ControlBarrier(_) | Statement::MemoryBarrier(_) => {}
             Statement::Block(inner) => self.block(inner),
             Statement::If { condition, accept, reject } => {
-                match choice(&self.homes[self.planned.home].unit.ir, self.function, *condition) {
+                match choice(&self.homes[self.planned.home].unit.ir, self.function, *condition, accept, reject) {
                     Choice::Accept => self.block(accept),
                     Choice::Reject => self.block(reject),
                     Choice::Open => {
@@ -334,7 +378,7 @@ impl<'a> Walker<'a> {
             Statement::Store { pointer, value } => {
                 let ir = &self.homes[self.planned.home].unit.ir;
                 if is_dead_store(self.planned.home, self.structs, self.function, self.info, ir, *pointer) {
-                    if !self.holds_action(*value) {
+                    if !self.holds_action(*value) && !self.holds_action(*pointer) {
                         return;
                     }
                     self.enliven_path(*pointer);
@@ -347,10 +391,14 @@ impl<'a> Walker<'a> {
                 arguments,
                 result,
             } => {
+                result.iter().for_each(|r| self.reached[r.index()] = true);
                 if self.can_go(*function) {
                     // Alive where its result is read, which is after this.
                     if let Some(result) = result {
                         self.pure_calls.insert(*result, (*function, arguments));
+                        if arguments.iter().any(|&a| self.holds_action(a)) {
+                            self.read(*result);
+                        }
                     }
                     return;
                 }
@@ -358,7 +406,10 @@ impl<'a> Walker<'a> {
                 arguments.iter().for_each(|&a| self.read(a));
                 result.iter().for_each(|&r| self.read(r));
             }
-            other => statement_operands(other, &mut |&h| self.read(h)),
+            other => statement_operands(other, &mut |&h| {
+                self.reached[h.index()] = true;
+                self.read(h);
+            }),
         }
     }
 

@@ -36,7 +36,8 @@ fn writes_local(unit: &Unit, function: &Function, mut pointer: Handle<Expression
     }
 }
 
-/// Whether a call may go when nobody reads its result: the callee is pure, and is given no pointer to write through.
+/// Whether a call may go when nobody reads its result: the callee is pure, and is given no pointer to write through. A
+/// function without a result stays: what stands among its arguments may act.
 pub fn can_go(functions: &[Planned], planned: &Planned, unit: &Unit, callee: Handle<Function>) -> bool {
     let takes_pointer = unit.ir.functions[callee].arguments.iter().any(|a| {
         matches!(
@@ -44,5 +45,5 @@ pub fn can_go(functions: &[Planned], planned: &Planned, unit: &Unit, callee: Han
             TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. }
         )
     });
-    !takes_pointer && planned.calls.get(&callee).is_some_and(|&id| functions[id].pure)
+    !takes_pointer && unit.ir.functions[callee].result.is_some() && planned.calls.get(&callee).is_some_and(|&id| functions[id].pure)
 }

@@ -462,7 +462,7 @@ fn calls_in(ir: &naga::Module, function: &naga::Function, block: &Block, calls: 
             Statement::Call { function, .. } => calls.push(*function),
             Statement::Block(inner) => calls_in(ir, function, inner, calls),
             Statement::If { condition, accept, reject } => {
-                let choice = choice(ir, function, *condition);
+                let choice = choice(ir, function, *condition, accept, reject);
                 if choice != Choice::Reject {
                     calls_in(ir, function, accept, calls);
                 }
