@@ -134,6 +134,24 @@ type Case = (&'static str, &'static str, &'static str, fn(f32) -> f32);
 /// Body of `value` over the helpers, and what it gives.
 const CASES: &[Case] = &[
     (
+        "a second name of a value, hidden by another let",
+        NONE,
+        "{ let k = other(x); let a = k; } let a = x * 2.0; return a;",
+        |x| x * 2.0,
+    ),
+    (
+        "a chain of second names in parentheses, one of them read",
+        NONE,
+        "var y = x; { let k = other(x); let a = (k); let b = (a); y += b; } { let k = pure(x); let a = (k); let b = a; } let a = y; let b = a; return b;",
+        |x| x + x * 5.0,
+    ),
+    (
+        "a second name of a parameter and of a variable",
+        NONE,
+        "var v = x * 2.0; { let a = x; let b = v; } let a = v; v = 7.0; let b = x; return a + b;",
+        |x| x * 2.0 + x,
+    ),
+    (
         "act among the arguments of a call of nothing",
         NONE,
         "nothing(act(x)); nothing(1.0); return x + count;",

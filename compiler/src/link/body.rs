@@ -15,7 +15,7 @@ type Exprs = Vec<Option<Handle<Expression>>>;
 type Emitted = (Handle<Expression>, Handle<Expression>, Span);
 
 /// A function on its way from its unit to the output.
-struct Clone<'f> {
+struct Copying<'f> {
     home: usize,
     planned: &'f Planned,
     source: &'f Function,
@@ -45,7 +45,7 @@ impl Linker<'_> {
         });
         let plan = self.plan;
         let Some(info) = planned.info(&plan.homes) else { return out };
-        let mut clone = Clone {
+        let mut copying = Copying {
             home,
             planned,
             source,
@@ -55,30 +55,30 @@ impl Linker<'_> {
         };
         for (handle, expression) in source.expressions.iter() {
             if planned.live[handle.index()] {
-                let patched = self.expression(&mut clone, &mut out, expression);
+                let patched = self.expression(&mut copying, &mut out, expression);
                 let span = self.span(home, source.expressions.get_span(handle));
-                clone.exprs[handle.index()] = Some(out.expressions.append(patched, span));
+                copying.exprs[handle.index()] = Some(out.expressions.append(patched, span));
             }
         }
         for (&handle, name) in &source.named_expressions {
-            if let Some(done) = clone.exprs[handle.index()] {
+            if let Some(done) = copying.exprs[handle.index()] {
                 out.named_expressions.insert(done, name.clone());
             }
         }
         out.diagnostic_filter_leaf = self.filter(home, source.diagnostic_filter_leaf);
-        out.body = self.block(&clone, &out, &source.body);
+        out.body = self.block(&copying, &out, &source.body);
         out
     }
 
-    fn local(&mut self, clone: &mut Clone, out: &mut Function, handle: Handle<LocalVariable>) -> Handle<LocalVariable> {
-        if let Some(done) = clone.locals[handle.index()] {
+    fn local(&mut self, copying: &mut Copying, out: &mut Function, handle: Handle<LocalVariable>) -> Handle<LocalVariable> {
+        if let Some(done) = copying.locals[handle.index()] {
             return done;
         }
-        let declared = &clone.source.local_variables[handle];
-        let ty = self.ty(clone.home, declared.ty);
+        let declared = &copying.source.local_variables[handle];
+        let ty = self.ty(copying.home, declared.ty);
         // Initialisers are constant expressions that precede every use.
-        let init = declared.init.and_then(|e| clone.exprs[e.index()]);
-        let span = self.span(clone.home, clone.source.local_variables.get_span(handle));
+        let init = declared.init.and_then(|e| copying.exprs[e.index()]);
+        let span = self.span(copying.home, copying.source.local_variables.get_span(handle));
         let done = out.local_variables.append(
             LocalVariable {
                 name: declared.name.clone(),
@@ -87,13 +87,13 @@ impl Linker<'_> {
             },
             span,
         );
-        clone.locals[handle.index()] = Some(done);
+        copying.locals[handle.index()] = Some(done);
         done
     }
 
     /// An expression with its operands and references in the output.
-    fn expression(&mut self, clone: &mut Clone, out: &mut Function, expression: &Expression) -> Expression {
-        let home = clone.home;
+    fn expression(&mut self, copying: &mut Copying, out: &mut Function, expression: &Expression) -> Expression {
+        let home = copying.home;
         let mut patched = expression.clone();
         match &mut patched {
             Expression::Constant(constant) => *constant = self.constant(home, *constant),
@@ -115,14 +115,14 @@ impl Linker<'_> {
             Expression::GlobalVariable(global) => {
                 let unit = &self.plan.homes[home].unit;
                 *global = if is_params(unit, *global) {
-                    self.params_block(clone, *global)
+                    self.params_block(copying, *global)
                 } else {
                     self.global(home, *global)
                 };
             }
-            Expression::LocalVariable(local) => *local = self.local(clone, out, *local),
-            Expression::CallResult(function) => *function = self.callee(clone, *function),
-            Expression::AccessIndex { base, index } => *index = self.member_index(clone, *base, *index),
+            Expression::LocalVariable(local) => *local = self.local(copying, out, *local),
+            Expression::CallResult(function) => *function = self.callee(copying, *function),
+            Expression::AccessIndex { base, index } => *index = self.member_index(copying, *base, *index),
             Expression::Math {
                 fun: MathFunction::Modf | MathFunction::Frexp,
                 ..
@@ -130,7 +130,7 @@ impl Linker<'_> {
             // Nothing but operands. A kind that naga adds stops the compiler at the visitor below.
             _ => {}
         }
-        expression_operands_mut(&mut patched, &mut |h| *h = clone.get(*h));
+        expression_operands_mut(&mut patched, &mut |h| *h = copying.get(*h));
         patched
     }
 
@@ -149,9 +149,9 @@ impl Linker<'_> {
         }
     }
 
-    fn callee(&self, clone: &Clone, function: Handle<Function>) -> Handle<Function> {
+    fn callee(&self, copying: &Copying, function: Handle<Function>) -> Handle<Function> {
         // Every call of a live branch was planned, and callees are linked before their callers.
-        clone
+        copying
             .planned
             .calls
             .get(&function)
@@ -160,53 +160,54 @@ impl Linker<'_> {
     }
 
     /// Whether a call stays although nobody reads its result.
-    fn is_kept(&self, clone: &Clone, callee: Handle<Function>) -> bool {
-        !can_go(&self.plan.functions, clone.planned, &self.plan.homes[clone.home].unit, callee) && clone.planned.calls.contains_key(&callee)
+    fn is_kept(&self, copying: &Copying, callee: Handle<Function>) -> bool {
+        !can_go(&self.plan.functions, copying.planned, &self.plan.homes[copying.home].unit, callee)
+            && copying.planned.calls.contains_key(&callee)
     }
 
     /// The block for a use of `params`: all parameters of one home are in one group.
-    fn params_block(&mut self, clone: &Clone, global: Handle<naga::GlobalVariable>) -> Handle<naga::GlobalVariable> {
+    fn params_block(&mut self, copying: &Copying, global: Handle<naga::GlobalVariable>) -> Handle<naga::GlobalVariable> {
         let plan = self.plan;
         let member = plan
             .live_params
             .iter()
-            .filter(|(home, _)| *home == clone.home)
+            .filter(|(home, _)| *home == copying.home)
             .map(|&(_, index)| index)
             .min();
         member
-            .and_then(|index| self.block_member(clone.home, index))
+            .and_then(|index| self.block_member(copying.home, index))
             .map_or(global, |(block, _)| block)
     }
 
-    fn member_index(&mut self, clone: &Clone, base: Handle<Expression>, index: u32) -> u32 {
+    fn member_index(&mut self, copying: &Copying, base: Handle<Expression>, index: u32) -> u32 {
         let plan = self.plan;
-        let unit = &plan.homes[clone.home].unit;
-        if let Expression::GlobalVariable(global) = clone.source.expressions[base]
+        let unit = &plan.homes[copying.home].unit;
+        if let Expression::GlobalVariable(global) = copying.source.expressions[base]
             && is_params(unit, global)
         {
-            return self.block_member(clone.home, index).map_or(index, |(_, member)| member);
+            return self.block_member(copying.home, index).map_or(index, |(_, member)| member);
         }
-        match struct_of(clone.home, &plan.structs, clone.info, &unit.ir, base) {
+        match struct_of(copying.home, &plan.structs, copying.info, &unit.ir, base) {
             Some(id) if !plan.structs.list[id].fixed => plan.structs.new_index(id, index),
             _ => index,
         }
     }
 
-    fn block(&self, clone: &Clone, out: &Function, source: &Block) -> Block {
+    fn block(&self, copying: &Copying, out: &Function, source: &Block) -> Block {
         let mut block = Block::with_capacity(source.len());
         let mut emitted = None;
-        self.statements(clone, out, source, &mut block, &mut emitted);
+        self.statements(copying, out, source, &mut block, &mut emitted);
         flush(&mut emitted, &mut block);
         block
     }
 
     /// Adds statements; inner blocks and branches that are always taken are laid open, since IR has no scopes to keep.
-    fn statements(&self, clone: &Clone, out: &Function, source: &Block, block: &mut Block, emitted: &mut Option<Emitted>) {
-        for (statement, &span) in reachable(&self.plan.homes[clone.home].unit.ir, clone.source, source) {
-            let span = self.span(clone.home, span);
+    fn statements(&self, copying: &Copying, out: &Function, source: &Block, block: &mut Block, emitted: &mut Option<Emitted>) {
+        for (statement, &span) in reachable(&self.plan.homes[copying.home].unit.ir, copying.source, source) {
+            let span = self.span(copying.home, span);
             if let Statement::Emit(range) = statement {
                 // Ranges that the dead expressions between them kept apart become one, as the parser would make them.
-                for handle in range.clone().filter_map(|h| clone.exprs[h.index()]) {
+                for handle in range.clone().filter_map(|h| copying.exprs[h.index()]) {
                     if needs_no_emit(&out.expressions[handle]) {
                         continue;
                     }
@@ -220,10 +221,10 @@ impl Linker<'_> {
                 }
                 continue;
             }
-            let ir = &self.plan.homes[clone.home].unit.ir;
+            let ir = &self.plan.homes[copying.home].unit.ir;
             let laid_open = match statement {
                 Statement::Block(inner) => Some(inner),
-                Statement::If { condition, accept, reject } => match choice(ir, clone.source, *condition, accept, reject) {
+                Statement::If { condition, accept, reject } => match choice(ir, copying.source, *condition, accept, reject) {
                     Choice::Accept => Some(accept),
                     Choice::Reject => Some(reject),
                     Choice::Open => None,
@@ -231,22 +232,22 @@ impl Linker<'_> {
                 _ => None,
             };
             if let Some(inner) = laid_open {
-                self.statements(clone, out, inner, block, emitted);
-            } else if let Some(statement) = self.statement(clone, out, statement) {
+                self.statements(copying, out, inner, block, emitted);
+            } else if let Some(statement) = self.statement(copying, out, statement) {
                 flush(emitted, block);
                 block.push(statement, span);
             }
         }
     }
 
-    fn statement(&self, clone: &Clone, out: &Function, statement: &Statement) -> Option<Statement> {
+    fn statement(&self, copying: &Copying, out: &Function, statement: &Statement) -> Option<Statement> {
         let plan = self.plan;
-        let ir = &plan.homes[clone.home].unit.ir;
+        let ir = &plan.homes[copying.home].unit.ir;
         let mut patched = match statement {
             Statement::If { condition, accept, reject } => {
-                let (accept, reject) = (self.block(clone, out, accept), self.block(clone, out, reject));
+                let (accept, reject) = (self.block(copying, out, accept), self.block(copying, out, reject));
                 return Some(Statement::If {
-                    condition: clone.get(*condition),
+                    condition: copying.get(*condition),
                     accept,
                     reject,
                 });
@@ -254,11 +255,11 @@ impl Linker<'_> {
             Statement::Switch { selector, cases } => {
                 let case = |c: &SwitchCase| SwitchCase {
                     value: c.value,
-                    body: self.block(clone, out, &c.body),
+                    body: self.block(copying, out, &c.body),
                     fall_through: c.fall_through,
                 };
                 return Some(Statement::Switch {
-                    selector: clone.get(*selector),
+                    selector: copying.get(*selector),
                     cases: cases.iter().map(case).collect(),
                 });
             }
@@ -268,31 +269,31 @@ impl Linker<'_> {
                 break_if,
             } => {
                 return Some(Statement::Loop {
-                    body: self.block(clone, out, body),
-                    continuing: self.block(clone, out, continuing),
-                    break_if: break_if.map(|b| clone.get(b)),
+                    body: self.block(copying, out, body),
+                    continuing: self.block(copying, out, continuing),
+                    break_if: break_if.map(|b| copying.get(b)),
                 });
             }
-            Statement::Store { pointer, .. } if is_dead_store(clone.home, &plan.structs, clone.source, clone.info, ir, *pointer) => {
+            Statement::Store { pointer, .. } if is_dead_store(copying.home, &plan.structs, copying.source, copying.info, ir, *pointer) => {
                 return None;
             }
             // A call that can go, and whose result nobody reads.
             Statement::Call { function, result, .. }
-                if result.is_none_or(|r| clone.exprs[r.index()].is_none()) && !self.is_kept(clone, *function) =>
+                if result.is_none_or(|r| copying.exprs[r.index()].is_none()) && !self.is_kept(copying, *function) =>
             {
                 return None;
             }
             other => other.clone(),
         };
         if let Statement::Call { function, .. } = &mut patched {
-            *function = self.callee(clone, *function);
+            *function = self.callee(copying, *function);
         }
-        statement_operands_mut(&mut patched, &mut |h| *h = clone.get(*h));
+        statement_operands_mut(&mut patched, &mut |h| *h = copying.get(*h));
         Some(patched)
     }
 }
 
-impl Clone<'_> {
+impl Copying<'_> {
     /// The linked expression. Whatever a living expression or statement needs is alive, and precedes it.
     fn get(&self, handle: Handle<Expression>) -> Handle<Expression> {
         self.exprs[handle.index()].unwrap_or(handle)

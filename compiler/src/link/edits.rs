@@ -402,15 +402,47 @@ impl Dead<'_> {
             .any(|at| self.word(at) == word && self.tokens[at].kind == Kind::Word && !self.tokens[at - 1].is(b'.') && !self.is_dead(at))
     }
 
-    /// Whether the IR knows the value under this name, and knows it to be dead.
+    /// Whether the IR knows the value of the `let` whose name stands at `name` and which ends at `end`, and knows it to be dead.
+    ///
+    /// The value is found by its place, since naga keeps one name for a value: `let b = a;` takes the name of `a` away.
     fn is_unneeded(&self, function: &naga::Function, name: usize, end: usize) -> bool {
-        let word = self.word(name);
         let range = self.tokens[name].end..self.tokens[end].start;
-        let mut found = function.named_expressions.iter().filter(|(handle, given)| {
+        let mut values = function.named_expressions.keys().filter(|handle| {
             let span = function.expressions.get_span(**handle).to_range().unwrap_or_default();
-            given.as_str() == word && range.contains(&(span.start as u32))
+            range.contains(&(span.start as u32))
         });
-        found.next().is_some_and(|(handle, _)| !self.planned.live[handle.index()])
+        if let Some(value) = values.next() {
+            return !self.planned.live[value.index()];
+        }
+        // Another name for an earlier `let`: needed if that is.
+        let mut words = (name + 1..end).filter(|&t| !matches!(self.tokens[t].kind, Kind::Mark(b'=' | b'(' | b')')));
+        let (Some(word), None) = (words.next(), words.next()) else {
+            return false;
+        };
+        let Some(earlier) = self.declaration(name - 1, self.word(word)) else {
+            return false;
+        };
+        let end = (earlier..name).find(|&t| self.tokens[t].is(b';'));
+        end.is_some_and(|end| self.is_unneeded(function, earlier + 1, end))
+    }
+
+    /// The `let` before a token that declares a name which is in scope there; `None` where something else declares it.
+    fn declaration(&self, before: usize, name: &str) -> Option<usize> {
+        // Blocks that are closed before the token, seen backwards.
+        let mut closed = 0usize;
+        for at in (self.item.body.start..before).rev() {
+            match self.tokens[at].kind {
+                Kind::Mark(b'}') => closed += 1,
+                Kind::Mark(b'{') => closed = closed.saturating_sub(1),
+                Kind::Word if closed == 0 && self.word(at + 1) == name => match self.word(at) {
+                    "let" => return Some(at),
+                    "var" | "const" => return None,
+                    _ => {}
+                },
+                _ => {}
+            }
+        }
+        None
     }
 }
 
