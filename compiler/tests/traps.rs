@@ -317,3 +317,30 @@ fn calls_that_act_stay() {
     assert_eq!(text.matches("acting_act(").count(), 5, "{text}");
     assert_forms_agree(&program);
 }
+
+/// A constructor under an interface's alias loses the arguments of members that nobody reads, as under the struct's own name.
+#[test]
+fn constructors_under_an_interfaces_alias_lose_dead_arguments() {
+    let library = common::Texts::default()
+        .category("pass", "group: 3", "")
+        .category(
+            "value",
+            "",
+            "struct Pair {\n    a: f32,\n    b: f32,\n}\n\nalias Two = Pair;\n\nfn value(x: f32) -> f32 {\n    return x;\n}\n",
+        )
+        .module(
+            "pass",
+            "run",
+            r#"slots: {"value": (interface: "value")}, resources: {"out": (kind: Host("out"))}"#,
+            "var<storage, read_write> out: array<f32>;\n\n@compute @workgroup_size(1)\nfn main() {\n    out[0] = value(out[1]);\n}\n",
+        )
+        .module(
+            "value",
+            "two",
+            "",
+            "fn value(x: f32) -> f32 {\n    let p = Two(x * 2.0, x * 3.0);\n    return p.b;\n}\n",
+        );
+    let program = library.link(r#"(module: "run", fill: {"value": "two"})"#);
+    assert!(!program.wgsl().contains("2.0"), "{}", program.wgsl());
+    assert_forms_agree(&program);
+}

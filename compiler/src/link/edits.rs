@@ -273,7 +273,7 @@ impl Dead<'_> {
         let plan = self.plan;
         let unit = &plan.homes[self.planned.home].unit;
         for reference in self.item.references.iter().filter(|r| self.item.body.contains(&r.token)) {
-            let name = unaliased(unit, &self.text[self.tokens[reference.token].range()]);
+            let name = unaliased(plan, unit, &self.text[self.tokens[reference.token].range()]);
             let declared = match unit.origin(name) {
                 Some(Origin::Interface(category)) => plan.interface_home(category),
                 Some(Origin::Own) => Some(plan.homes[self.planned.home].first),
@@ -446,13 +446,23 @@ impl Dead<'_> {
     }
 }
 
-/// What `alias A = S;` of a module stands for; other names as they are.
-fn unaliased<'u>(unit: &'u Unit, mut name: &'u str) -> &'u str {
+/// What `alias A = S;` of a module or of an interface stands for; other names as they are.
+fn unaliased<'p>(plan: &'p Plan, unit: &'p Unit, mut name: &'p str) -> &'p str {
     // An alias cannot lead to itself: naga has accepted the unit.
-    while let Some(item) = unit.scan.item(name).filter(|i| i.kind == ItemKind::Alias && i.tokens.len() == 5) {
-        name = &unit.file.text[unit.scan.tokens[item.tokens.start + 3].range()];
+    loop {
+        let declares = match unit.origin(name) {
+            Some(Origin::Interface(category)) => plan.interface_home(category).map_or(unit, |home| &plan.homes[home].unit),
+            _ => unit,
+        };
+        match declares
+            .scan
+            .item(name)
+            .filter(|i| i.kind == ItemKind::Alias && i.tokens.len() == 5)
+        {
+            Some(item) => name = &declares.file.text[declares.scan.tokens[item.tokens.start + 3].range()],
+            None => return name,
+        }
     }
-    name
 }
 
 /// Whether a `<` behind this word opens a template list: of what can stand in an expression, by the whole name, since a
