@@ -344,3 +344,21 @@ fn constructors_under_an_interfaces_alias_lose_dead_arguments() {
     assert!(!program.wgsl().contains("2.0"), "{}", program.wgsl());
     assert_forms_agree(&program);
 }
+
+/// A line that begins like a comment but stands inside a longer one is no comment of its own: taking it away with a dead
+/// member or statement below would leave the longer one open.
+#[test]
+fn dead_members_and_statements_leave_comments_whole() {
+    let library = small().module(
+        "value",
+        "noted",
+        "",
+        "struct Noted {\n    kept: f32,\n    /* about the next\n    // one */\n    dead: f32, // gone\n    // gone, too\n    also_dead: f32,\n}\n\n\
+         fn value(x: f32) -> f32 {\n    var n: Noted;\n    n.kept = x;\n    /* why\n    // so */\n    n.dead = x; // gone\n    // gone, too\n    n.also_dead = x;\n    return n.kept;\n}\n",
+    );
+    let program = library.link(r#"(module: "run", fill: {"value": "noted"})"#);
+    let text = program.wgsl();
+    assert!(!text.contains("dead") && !text.contains("gone"), "{text}");
+    assert_eq!((text.matches("/*").count(), text.matches("*/").count()), (2, 2), "{text}");
+    assert_forms_agree(&program);
+}

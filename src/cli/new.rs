@@ -99,7 +99,7 @@ fn declaration(category: &Category, name: &str) -> String {
     }},
     // Holes that other modules fill; the WGSL calls the functions of the interface by their names.
     slots: {{
-        // "ndf": (interface: "ndf", default: Some("ggx"), doc: "Distribution of microfacet normals"),
+        // "ndf": (interface: "ndf", default: "ggx", doc: "Distribution of microfacet normals"),
     }},
     // Module-scope textures, samplers and buffers of the WGSL, written there without @group and @binding.
     resources: {{

@@ -7,7 +7,7 @@ use std::ops::Range;
 use naga::{Block, Handle, Span, Statement};
 
 use crate::parse::lex::{Kind, Token};
-use crate::parse::scan::{Item, ItemKind, closing};
+use crate::parse::scan::{Item, ItemKind, closing, whole_lines};
 use crate::parse::{Origin, Unit};
 use crate::plan::{Choice, Plan, Planned, can_go, choice, is_dead_store, leaves, reachable};
 
@@ -160,25 +160,7 @@ impl Dead<'_> {
 
     /// Takes the whole lines, with the comment above them, where nothing else stands on them.
     fn remove_lines(&mut self, range: Range<usize>) {
-        let line = self.text[..range.start].rfind('\n').map_or(0, |n| n + 1);
-        let end = self.text[range.end..].find('\n').map_or(self.text.len(), |n| range.end + n + 1);
-        if !self.text[line..range.start].trim().is_empty() || !self.text[range.end..end].trim().is_empty() {
-            self.ranges.push(range);
-            return;
-        }
-        let before = self.tokens.partition_point(|t| t.end as usize <= range.start);
-        let before = self.tokens[..before].last().map_or(0, |t| t.end as usize);
-        // A line that begins like a comment may stand inside a longer one.
-        let in_block = self.text[before..range.start].contains("/*");
-        let mut first = line;
-        while first > 0 && !in_block {
-            let previous = self.text[..first - 1].rfind('\n').map_or(0, |n| n + 1);
-            if !self.text[previous..first].trim_start().starts_with("//") {
-                break;
-            }
-            first = previous;
-        }
-        self.ranges.push(first..end);
+        self.ranges.push(whole_lines(self.text, self.tokens, range));
     }
 
     /// `if c { A } else { B }` becomes `{ A }` or `{ B }`, or nothing.

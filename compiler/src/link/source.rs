@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::edits::{Edit, dead_text};
 use crate::manifest::Combine;
-use crate::parse::scan::{Item, ItemKind};
+use crate::parse::scan::{Item, ItemKind, whole_lines};
 use crate::parse::{Origin, StructKey, constant_name, param_uses, typed_wgsl, wgsl_type};
 use crate::plan::{Body, GROUPS, Plan, Planned, joined};
 
@@ -254,7 +254,7 @@ impl Writer<'_> {
             if unit.scan.tokens.get(field.tokens.end).is_some_and(|t| t.is(b',')) {
                 end = unit.scan.tokens[field.tokens.end].end as usize;
             }
-            edits.push((whole_lines(text, bytes.start..end), String::new()));
+            edits.push((whole_lines(text, &unit.scan.tokens, bytes.start..end), String::new()));
         }
     }
 
@@ -408,28 +408,6 @@ impl Writer<'_> {
         }
         plan.names.get(&(declared, name.to_owned())).cloned()
     }
-}
-
-/// A stretch with its whole lines and the comment above, where nothing else stands on them.
-fn whole_lines(text: &str, range: Range<usize>) -> Range<usize> {
-    let line = text[..range.start].rfind('\n').map_or(0, |n| n + 1);
-    let end = text[range.end..].find('\n').map_or(text.len(), |n| range.end + n + 1);
-    if !text[line..range.start].trim().is_empty() {
-        return range;
-    }
-    let behind = text[range.end..end].trim();
-    if !behind.is_empty() && !behind.starts_with("//") {
-        return range;
-    }
-    let mut first = line;
-    while first > 0 {
-        let previous = text[..first - 1].rfind('\n').map_or(0, |n| n + 1);
-        if !text[previous..first].trim_start().starts_with("//") {
-            break;
-        }
-        first = previous;
-    }
-    first..end
 }
 
 /// The text of a range with the edits made. Edits inside a removed stretch go with it.

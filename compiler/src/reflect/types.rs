@@ -104,7 +104,7 @@ pub enum BindingType {
     },
     /// Storage buffer.
     Storage {
-        /// No stage writes it.
+        /// Declared `read`.
         read_only: bool,
         /// Layout of its contents.
         layout: Layout,
