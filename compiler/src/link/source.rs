@@ -391,7 +391,7 @@ impl Writer<'_> {
         let plan = self.plan;
         let unit = &plan.homes[home].unit;
         if let Some(handle) = unit.functions.get(name) {
-            return Some(plan.functions[*caller?.calls.get(handle)?].name.clone());
+            return Some(plan.functions[caller?.calls.get(*handle)?].name.clone());
         }
         let (declared, is_item) = match unit.origin(name)? {
             Origin::Own => {

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::catalog::Catalog;
 use crate::parse::constant_name;
-use crate::plan::{Body, Plan, declared, is_instances};
+use crate::plan::{Body, Plan, declared};
 use crate::validate::Validated;
 
 /// Reflects a pass.
@@ -67,7 +67,7 @@ fn bindings(catalog: &Catalog, plan: &Plan, validated: &Validated) -> Vec<Bindin
         let name = unit.ir.global_variables[global.handle].name.clone().unwrap_or_default();
         let instance = plan.homes[global.home].instance.map(|i| plan.instances.list[i].name.clone());
         let fill = match (&instance, declared(catalog, plan, global.home, &name)) {
-            (Some(instance), _) if is_instances(unit, global.handle) => Fill::Instances {
+            (Some(instance), _) if unit.instances == Some(global.handle) => Fill::Instances {
                 instance: instance.clone(),
             },
             (_, Some(resource)) => Fill::Resource {
