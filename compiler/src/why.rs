@@ -71,7 +71,7 @@ pub fn why(plan: &Plan, reflection: &Reflection, wgsl: &str, name: &str) -> Vec<
     for global in &plan.globals {
         let unit = &plan.homes[global.home].unit;
         let own = unit.ir.global_variables[global.handle].name.clone().unwrap_or_default();
-        let emitted = plan.names.get(&(global.home, own.clone())).unwrap_or(&own);
+        let emitted = plan.name(global.home, &own).unwrap_or(&own);
         if emitted == name {
             let path = (0..plan.functions.len()).find(|&f| reads_global(plan, f, global.home, global.handle));
             found.push(answer(
@@ -86,9 +86,9 @@ pub fn why(plan: &Plan, reflection: &Reflection, wgsl: &str, name: &str) -> Vec<
     if found.is_empty() {
         found.extend(
             plan.names
-                .iter()
-                .filter(|(_, emitted)| *emitted == name)
-                .filter_map(|((home, own), _)| item(plan, wgsl, name, *home, own)),
+                .all(&plan.homes)
+                .filter(|&(_, _, emitted)| emitted == name)
+                .filter_map(|(home, own, _)| item(plan, wgsl, name, home, own)),
         );
     }
     found

@@ -10,6 +10,7 @@ use naga::{Handle, TypeInner};
 use super::checks;
 use super::compose::{Composed, Interface, Needs, Origin, compose};
 use super::facts::{Facts, facts};
+use super::filter::{Filter, word_hash};
 use super::pure::droppable;
 use super::scan::Scan;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
@@ -51,6 +52,8 @@ pub struct Unit {
     pub fixed_structs: HashSet<StructKey>,
     /// Words that linked names must not be: locals, and words of the language that the text uses.
     pub words: HashSet<String>,
+    /// The same, for asking quickly.
+    pub words_filter: Filter,
     /// Facts of the functions: by function handle, then by entry point.
     pub facts: Vec<Facts>,
     /// Whether a call of a function, if it is pure, may go when nobody reads its result. By handle.
@@ -110,6 +113,7 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     let mut unit = Unit {
         fixed_structs: HashSet::default(),
         words: HashSet::default(),
+        words_filter: Filter::default(),
         facts: Vec::new(),
         droppable: Vec::new(),
         params: None,
@@ -129,6 +133,7 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     unit.fixed_structs = fixed_structs(&unit);
     unit.dependent = dependents(&unit);
     unit.words = words(&unit);
+    unit.words.iter().for_each(|word| unit.words_filter.insert(word_hash(word)));
     unit.facts = facts(&unit);
     unit.droppable = unit.ir.functions.iter().map(|(_, f)| droppable(&unit.ir, f)).collect();
     unit.params = variable(&unit, "params", &Origin::Params);

@@ -10,7 +10,7 @@ mod stages;
 mod stores;
 mod structs;
 
-use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use rustc_hash::FxHashSet as HashSet;
 use std::sync::Arc;
 
 use naga::Handle;
@@ -20,7 +20,7 @@ use crate::parse::{Facts, Unit};
 use crate::resolve::{Instances, Tree};
 
 pub use bindings::{Block, GROUPS, PlannedGlobal, declared, declaring};
-pub use names::joined;
+pub use names::{Names, joined};
 pub use reach::{Roots, plan, roomy};
 pub use stores::{is_dead_store, struct_of};
 pub use structs::Structs;
@@ -129,11 +129,16 @@ pub struct Plan {
     pub blocks: Vec<Block>,
     /// Whether functions are nested or chained so deep that walks over them want a large stack: see [`roomy`].
     pub deep: bool,
-    /// Emitted names of constants, overrides, structs, aliases and variables: home, name in the unit.
-    pub names: HashMap<(usize, String), String>,
+    /// Emitted names of the units' items.
+    pub names: Names,
 }
 
 impl Plan {
+    /// The emitted name of an item of a home.
+    pub fn name(&self, home: usize, name: &str) -> Option<&str> {
+        self.names.get(&self.homes, home, name)
+    }
+
     /// The home of a category's interface.
     pub fn interface_home(&self, category: &str) -> Option<usize> {
         self.homes.iter().position(|h| h.unit.interface.as_deref() == Some(category))

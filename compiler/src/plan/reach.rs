@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use naga::Handle;
 
-use super::{Body, Calls, Home, Plan, Planned, Structs, bindings, live, names};
+use super::{Body, Calls, Home, Names, Plan, Planned, Structs, bindings, live, names};
 use crate::catalog::Catalog;
 use crate::contracts::compute_entry;
 use crate::diagnostics::{Diagnostic, Report, codes};
@@ -98,7 +98,7 @@ fn follow(catalog: &Catalog, mut reach: Reach, roots: &Roots) -> Result<Plan, Re
         globals: Vec::new(),
         blocks: Vec::new(),
         deep: false,
-        names: HashMap::default(),
+        names: Names::default(),
     };
     live::analyse(&mut plan);
     bindings::allocate(catalog, &mut plan)?;
