@@ -216,8 +216,7 @@ impl Catalog {
             }
         }
         contracts::named_functions(&interface, &used)?;
-        lock(&self.interfaces).insert(name.to_owned(), Arc::clone(&interface));
-        Ok(interface)
+        Ok(first(&self.interfaces, name, interface))
     }
 
     fn read_interface(&self, name: &str) -> Result<Interface, Report> {
@@ -267,8 +266,7 @@ impl Catalog {
         )?;
         contracts::interface_unit(&interface.category, &unit)?;
         let unit = Arc::new(unit);
-        lock(&self.interface_units).insert(name.to_owned(), Arc::clone(&unit));
-        Ok(unit)
+        Ok(first(&self.interface_units, name, unit))
     }
 
     /// A module, parsed with these constants.
@@ -288,8 +286,7 @@ impl Catalog {
             }
         };
         let unit = Arc::new(self.parse_module(module, file, constants)?);
-        module.variants.insert(key, Arc::clone(&unit));
-        Ok(unit)
+        Ok(module.variants.insert(key, unit))
     }
 
     /// Parses a module's text.
@@ -410,6 +407,12 @@ fn default_of(module: &Module, name: &str, param: &Param) -> Result<Typed, Repor
         let place = Place::new(&module.source).keys(&["params", name, "default"]);
         error.diagnostic(name, &module.source, place.span()).into()
     })
+}
+
+/// Keeps what was made, unless another thread was faster: whoever asks gets the one that was there first, since linking goes by
+/// identity.
+fn first<T>(kept: &Mutex<HashMap<String, Arc<T>>>, name: &str, made: Arc<T>) -> Arc<T> {
+    Arc::clone(lock(kept).entry(name.to_owned()).or_insert(made))
 }
 
 /// A panic while the lock was held can only have left a cache entry out: the maps are never half changed.
