@@ -82,7 +82,6 @@ fn every_candidate_draws_the_same_picture() {
     let pieces = pieces(&subject.program).unwrap();
     for (name, module) in modules(&pieces) {
         let found = difference(&ours, &draw(Some(module)));
-        eprintln!("{name}: {found}");
         assert!(found <= TOLERANCE, "{name}: off by {found}");
     }
     for (name, module) in modules(&changed(&pieces, "x2 * x2 * x", "x2 * x2")).into_iter().step_by(2) {
@@ -109,11 +108,6 @@ fn the_pieces_are_the_whole_shader() {
         lines.sort();
     }
     assert_eq!(lines, expected);
-    let mut composer = oil::Sources::new(&pieces).composer(true).unwrap();
-    let module = oil::Sources::new(&pieces).make(&mut composer).unwrap();
-    let v = validate::validate(module).unwrap();
-    let text = shadewright_compiler::emit(&v, shadewright_compiler::Target::WgslFromIr, None);
-    eprintln!("OIL {:?} {}", text.as_ref().map(|t| canonical_hash("oil", &format!("{t}"))), subject.program.hash());
     // Texts can be held against the shader exactly; naga_oil's module cannot, as it names and orders constants its own way.
     let wesl = wesl::Compiler::new(&pieces, true).and_then(|compiler| compiler.text());
     for text in [concatenate(&pieces), wesl.unwrap()] {
