@@ -8,8 +8,8 @@ use naga::{Block, Handle, Span, Statement};
 
 use crate::parse::lex::{Kind, Token};
 use crate::parse::scan::{Item, ItemKind, closing, whole_lines};
-use crate::parse::{Origin, Unit};
-use crate::plan::{Choice, Plan, Planned, can_go, choice, is_dead_store, leaves, reachable};
+use crate::parse::{Choice, Origin, Unit, choice, leaves, reachable};
+use crate::plan::{Plan, Planned, is_dead_store};
 
 /// A stretch of text and what stands there instead.
 pub type Edit = (Range<usize>, String);
@@ -86,8 +86,7 @@ impl Dead<'_> {
                 self.block(function, continuing);
             }
             Statement::Store { pointer, .. } => {
-                let Some(info) = self.planned.info(&self.plan.homes) else { return };
-                if is_dead_store(self.planned.home, &self.plan.structs, function, info, &unit.ir, *pointer)
+                if is_dead_store(self.planned, &self.plan.structs, unit, function, *pointer)
                     && let Some(first) = self.token_at(span)
                 {
                     self.remove_statement(first);
@@ -374,7 +373,7 @@ impl Dead<'_> {
     /// Whether a call of this function stays, whoever reads its result.
     fn is_kept(&self, callee: Handle<naga::Function>) -> bool {
         let unit = &self.plan.homes[self.planned.home].unit;
-        self.planned.calls.contains_key(&callee) && !can_go(&self.plan.functions, self.planned, unit, callee)
+        self.planned.is_kept(&self.plan.functions, unit, callee)
     }
 
     /// Whether the name declared at `name` is mentioned in living text elsewhere.

@@ -171,7 +171,7 @@ impl Writer<'_> {
     fn item(&mut self, home: usize, name: &str) -> Option<(ItemKind, String)> {
         let plan = self.plan;
         let unit = &plan.homes[home].unit;
-        let emitted = plan.names.get(&(home, name.to_owned())).cloned().unwrap_or_else(|| name.to_owned());
+        let emitted = plan.name(home, name).unwrap_or(name).to_owned();
         match unit.origin(name) {
             Some(Origin::Param(param)) => {
                 if let Some(value) = unit.needs.constants.get(param) {
@@ -192,7 +192,7 @@ impl Writer<'_> {
             Some(Origin::Instances) => {
                 let declared = plan.shared_home(home);
                 self.want(declared, "Instance");
-                let ty = plan.names.get(&(declared, "Instance".to_owned()))?;
+                let ty = plan.name(declared, "Instance")?;
                 Some((
                     ItemKind::Variable,
                     format!("{}var<storage, read> {emitted}: array<{ty}>;\n", self.binding(home, name)?),
@@ -383,7 +383,7 @@ impl Writer<'_> {
         let home = self.plan.shared_home(home);
         let name = constant_name(param);
         self.want(home, &name);
-        Some((range, self.plan.names.get(&(home, name))?.clone()))
+        Some((range, self.plan.name(home, &name)?.to_owned()))
     }
 
     /// Emitted name of what a word stands for; `None` for words of the language.
@@ -391,7 +391,7 @@ impl Writer<'_> {
         let plan = self.plan;
         let unit = &plan.homes[home].unit;
         if let Some(handle) = unit.functions.get(name) {
-            return Some(plan.functions[*caller?.calls.get(handle)?].name.clone());
+            return Some(plan.functions[caller?.calls.get(*handle)?].name.clone());
         }
         let (declared, is_item) = match unit.origin(name)? {
             Origin::Own => {
@@ -406,7 +406,7 @@ impl Writer<'_> {
         if is_item {
             self.want(declared, name);
         }
-        plan.names.get(&(declared, name.to_owned())).cloned()
+        plan.name(declared, name).map(str::to_owned)
     }
 }
 

@@ -95,6 +95,11 @@ impl Scan {
         self.by_name.get(name).map(|&index| &self.items[index])
     }
 
+    /// Its index in [`Scan::items`].
+    pub fn item_index(&self, name: &str) -> Option<usize> {
+        self.by_name.get(name).copied()
+    }
+
     /// Bytes of a range of tokens; empty for an empty range.
     pub fn bytes(&self, tokens: &Range<usize>) -> Range<usize> {
         match (
