@@ -33,7 +33,11 @@ fn main() -> ExitCode {
 
 fn all(arguments: &Arguments) -> Result<(), String> {
     let own = std::env::current_exe().map_err(|error| error.to_string())?;
-    let counts: &[usize] = if arguments.quick { &[10, 100, 1000] } else { &[10, 100, 1000, 10_000] };
+    let counts: &[usize] = if arguments.quick {
+        &[10, 100, 1000]
+    } else {
+        &[10, 100, 1000, 10_000]
+    };
     let mut rows = Vec::new();
     for (kept, described) in KEPT {
         for count in counts {
@@ -88,7 +92,10 @@ fn measure(kept: &str, count: &str, threads: &str) -> Result<(), String> {
     let number = |text: &str| text.parse::<usize>().map_err(|_| format!("`{text}` is no number"));
     let said = |report: Report| report.render();
     let catalog = Catalog::load(shadewright_modules::library()).map_err(said)?;
-    let recipes: Vec<Recipe> = permutations(&catalog, "forward", number(count)?)?.into_iter().map(Recipe::from).collect();
+    let recipes: Vec<Recipe> = permutations(&catalog, "forward", number(count)?)?
+        .into_iter()
+        .map(Recipe::from)
+        .collect();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(number(threads)?).build();
     let pool = pool.map_err(|error| error.to_string())?;
     let make = |recipe: &Recipe| match kept {
@@ -98,7 +105,11 @@ fn measure(kept: &str, count: &str, threads: &str) -> Result<(), String> {
             let validated = validate::validate(module).map_err(|error| error.to_string())?;
             Ok(Product::Module(Box::new(validated)))
         }
-        _ => catalog.plan(recipe, "main").and_then(|plan| plan.source()).map(Product::Text).map_err(said),
+        _ => catalog
+            .plan(recipe, "main")
+            .and_then(|plan| plan.source())
+            .map(Product::Text)
+            .map_err(said),
     };
     let (before, _) = resident().unwrap_or_default();
     let start = Instant::now();

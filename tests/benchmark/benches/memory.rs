@@ -54,7 +54,9 @@ fn run() -> Result<(), String> {
     let mut composer = sources.composer(true)?;
     let wesl = wesl::Compiler::new(&pieces, false)?;
     let rows = vec![
-        counted("ours: program (IR, its validation, reflection, plan)", || said(catalog.compile(recipe, "main")))?,
+        counted("ours: program (IR, its validation, reflection, plan)", || {
+            said(catalog.compile(recipe, "main"))
+        })?,
         counted("ours: plan", || said(catalog.plan(recipe, "main")))?,
         counted("ours: IR written from a plan", || said(plan.link()))?,
         counted("ours: validated IR, plan thrown away", || {
@@ -67,7 +69,9 @@ fn run() -> Result<(), String> {
         })?,
         counted("naga_oil, modules built: IR", || sources.make(&mut composer))?,
         counted("wesl, no checks: WGSL text", || wesl.text())?,
-        counted("concatenation: parsed and validated IR", || parse_and_validate(&concatenate(&pieces)))?,
+        counted("concatenation: parsed and validated IR", || {
+            parse_and_validate(&concatenate(&pieces))
+        })?,
     ];
     let header = ["what is made and kept", "allocations", "bytes allocated", "bytes kept"];
     arguments.publish("memory", &table(&header, &rows))

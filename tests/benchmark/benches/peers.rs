@@ -167,7 +167,11 @@ fn measured(subject: &Subject, pieces: &[Piece], count: usize) -> Result<Vec<Tim
             let text = said(catalog.plan(&recipe, "main").and_then(|plan| plan.source()))?;
             Ok((catalog, text))
         }),
-        Candidate::with_input(VALIDATION, || linked.clone(), |module| gate::validate(module).map_err(|e| e.to_string())),
+        Candidate::with_input(
+            VALIDATION,
+            || linked.clone(),
+            |module| gate::validate(module).map_err(|e| e.to_string()),
+        ),
         Candidate::new(CONCATENATION, || parse_and_validate(&concatenate(pieces))),
         Candidate::new(OIL_WARM, || sources.make(&mut validating.borrow_mut())),
         Candidate::new(OIL_WARM_LEAN, || both(sources.make(&mut lean.borrow_mut()))),
@@ -208,7 +212,10 @@ fn measured(subject: &Subject, pieces: &[Piece], count: usize) -> Result<Vec<Tim
 }
 
 fn of<'t>(times: &'t [Times], name: &str) -> Result<&'t Times, String> {
-    times.iter().find(|t| t.name == name).ok_or_else(|| format!("{name} was not measured"))
+    times
+        .iter()
+        .find(|t| t.name == name)
+        .ok_or_else(|| format!("{name} was not measured"))
 }
 
 fn times_table(times: &[Times], names: &[&str], base: &str) -> Result<String, String> {
@@ -235,7 +242,9 @@ fn sum(times: &[Times], names: &[&str]) -> Result<Times, String> {
     let rounds = parts.iter().map(|part| part.seconds.len()).min().unwrap_or(0);
     Ok(Times {
         name: names.join(", "),
-        seconds: (0..rounds).map(|round| parts.iter().map(|part| part.seconds[round]).sum()).collect(),
+        seconds: (0..rounds)
+            .map(|round| parts.iter().map(|part| part.seconds[round]).sum())
+            .collect(),
     })
 }
 
@@ -254,7 +263,10 @@ fn answers(times: &[Times]) -> Result<String, String> {
             ]);
         }
     }
-    Ok(table(&["asked for", "held against", "ours", "theirs", "theirs in ours (median of ratios)"], &rows))
+    Ok(table(
+        &["asked for", "held against", "ours", "theirs", "theirs in ours (median of ratios)"],
+        &rows,
+    ))
 }
 
 /// Says where somebody else is faster.
@@ -301,7 +313,15 @@ fn outputs(subject: &Subject, pieces: &[Piece]) -> Result<String, String> {
             same.map_or("-", |same| if same { "yes" } else { "no" }).to_owned(),
         ]);
     }
-    let header = ["output", "lines of text", "functions", "expressions", "types", "variables", "canonical hash is ours"];
+    let header = [
+        "output",
+        "lines of text",
+        "functions",
+        "expressions",
+        "types",
+        "variables",
+        "canonical hash is ours",
+    ];
     let mut out = String::new();
     // Infallible: writing to a string.
     let _ = write!(

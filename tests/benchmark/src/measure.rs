@@ -125,7 +125,10 @@ mod tests {
             })
         };
         let times = rounds(vec![candidate("a"), candidate("b")], 3).unwrap();
-        assert_eq!(times.iter().map(|t| (t.name.as_str(), t.seconds.len())).collect::<Vec<_>>(), [("a", 3), ("b", 3)]);
+        assert_eq!(
+            times.iter().map(|t| (t.name.as_str(), t.seconds.len())).collect::<Vec<_>>(),
+            [("a", 3), ("b", 3)]
+        );
         assert_eq!(order.into_inner().concat(), "aaabbbbbbaaaaaabbbbbbaaa");
         let failing = Candidate::new("c", || Err::<(), _>("no".to_owned()));
         assert_eq!(rounds(vec![failing], 1).unwrap_err(), "c: no");

@@ -53,7 +53,11 @@ impl Draw<'_> {
     fn node(&mut self, module: &Module, depth: usize) -> Node {
         let mut node = Node::new(module.name.clone());
         for (name, slot) in &module.manifest.slots {
-            let fits: Vec<_> = self.catalog.modules().filter(|m| m.category == slot.interface && stands_below(m, module)).collect();
+            let fits: Vec<_> = self
+                .catalog
+                .modules()
+                .filter(|m| m.category == slot.interface && stands_below(m, module))
+                .collect();
             // No tree of the library is this deep; a module that fits its own slot would make it endless.
             if fits.is_empty() || depth > 8 {
                 continue;
@@ -103,8 +107,12 @@ fn stands_below(module: &Module, parent: &Module) -> bool {
             || manifest.instances.values().any(|field| field.role.as_deref() == Some(tag))
     };
     module.manifest.rules.iter().all(|rule| match rule {
-        Rule::Requires { tag, among: Among::Parent, .. } => has(tag),
-        Rule::Excludes { tag, among: Among::Parent, .. } => !has(tag),
+        Rule::Requires {
+            tag, among: Among::Parent, ..
+        } => has(tag),
+        Rule::Excludes {
+            tag, among: Among::Parent, ..
+        } => !has(tag),
         _ => true,
     })
 }

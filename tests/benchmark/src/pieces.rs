@@ -133,13 +133,20 @@ fn homes(program: &Program, items: &[Item], uses: &[Vec<usize>]) -> Vec<String> 
     (0..items.len())
         .map(|i| {
             let user = || (0..items.len()).find(|&user| uses[user].contains(&i) && homes[user].is_some());
-            homes[i].clone().or_else(|| homes[user()?].clone()).unwrap_or_else(|| "params".to_owned())
+            homes[i]
+                .clone()
+                .or_else(|| homes[user()?].clone())
+                .unwrap_or_else(|| "params".to_owned())
         })
         .collect()
 }
 
 fn home(module: &str, place: &str) -> String {
-    let path = if place.is_empty() { format!("{module}_interface") } else { place.to_owned() };
+    let path = if place.is_empty() {
+        format!("{module}_interface")
+    } else {
+        place.to_owned()
+    };
     let words = path.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     // No digit at an end: naga appends `_` to such names, which the peers' name mangling does not expect.
     words.map(digits_as_letters).collect::<Vec<_>>().join("_")
@@ -226,9 +233,14 @@ fn item(text: &str, code: &str) -> Item {
         }
         at += begin + length;
     }
-    let keyword = words.iter().position(|word| ["fn", "struct", "const", "var", "override", "alias"].contains(word));
+    let keyword = words
+        .iter()
+        .position(|word| ["fn", "struct", "const", "var", "override", "alias"].contains(word));
     let is_template = ["uniform", "storage", "read", "read_write", "write", "private", "workgroup"];
-    let name = words.iter().skip(keyword.map_or(0, |k| k + 1)).find(|word| !is_template.contains(word));
+    let name = words
+        .iter()
+        .skip(keyword.map_or(0, |k| k + 1))
+        .find(|word| !is_template.contains(word));
     Item {
         name: name.copied().unwrap_or_default().to_owned(),
         text: text.trim().to_owned(),

@@ -115,16 +115,29 @@ mod tests {
             "before\n<!-- measured: a -->\n\nnew\n\n<!-- end: a -->\n<!-- measured: b -->\n<!-- end: b -->\nafter\n"
         );
         assert_eq!(with_section(&once, "a", "new").unwrap(), once);
-        assert!(with_section(&once, "b", "x").unwrap().ends_with("<!-- measured: b -->\n\nx\n\n<!-- end: b -->\nafter\n"));
+        assert!(
+            with_section(&once, "b", "x")
+                .unwrap()
+                .ends_with("<!-- measured: b -->\n\nx\n\n<!-- end: b -->\nafter\n")
+        );
         assert_eq!(with_section(text, "c", "x"), None);
     }
 
     /// Catches numbers rounded into four digits, and units off by a thousand.
     #[test]
     fn numbers_have_three_digits() {
-        assert_eq!([0.0123, 1.5e-4, 2.0, 9.996e-3].map(time), ["12.3 ms", "150 us", "2.00 s", "10.0 ms"]);
-        assert_eq!([512.0, 1536.0 * 1024.0, 3.0 * 1024.0_f64.powi(3)].map(bytes), ["0.50 KiB", "1.50 MiB", "3.00 GiB"]);
-        assert_eq!(table(&["a", "b"], &[vec!["1".into(), "2".into()]]), "| a | b |\n|---|---|\n| 1 | 2 |\n");
+        assert_eq!(
+            [0.0123, 1.5e-4, 2.0, 9.996e-3].map(time),
+            ["12.3 ms", "150 us", "2.00 s", "10.0 ms"]
+        );
+        assert_eq!(
+            [512.0, 1536.0 * 1024.0, 3.0 * 1024.0_f64.powi(3)].map(bytes),
+            ["0.50 KiB", "1.50 MiB", "3.00 GiB"]
+        );
+        assert_eq!(
+            table(&["a", "b"], &[vec!["1".into(), "2".into()]]),
+            "| a | b |\n|---|---|\n| 1 | 2 |\n"
+        );
     }
 
     /// Catches arguments that are lost, and cargo's own taken for one of ours.
@@ -132,7 +145,10 @@ mod tests {
     fn arguments() {
         let parse = |line: &str| Arguments::parse(line.split_whitespace().map(str::to_owned));
         let read = parse("--quick --write a.md --bench child 3").unwrap();
-        assert_eq!((read.quick, read.write.as_deref(), read.rest.join(" ")), (true, Some("a.md"), "child 3".into()));
+        assert_eq!(
+            (read.quick, read.write.as_deref(), read.rest.join(" ")),
+            (true, Some("a.md"), "child 3".into())
+        );
         assert_eq!(parse("--write").unwrap_err(), "--write needs a path");
     }
 }

@@ -34,7 +34,9 @@ fn modules(pieces: &[Piece]) -> Vec<(&'static str, naga::Module)> {
         ("wesl", wesl(true)),
         ("wesl, no checks", wesl(false)),
     ];
-    candidates.map(|(name, module)| (name, module.unwrap_or_else(|e| panic!("{name}: {e}")))).into()
+    candidates
+        .map(|(name, module)| (name, module.unwrap_or_else(|e| panic!("{name}: {e}"))))
+        .into()
 }
 
 /// The same pieces with one item's text changed.
@@ -97,7 +99,14 @@ fn the_pieces_are_the_whole_shader() {
     let pieces = pieces(&subject.program).unwrap();
     let names: Vec<&str> = pieces.iter().map(|piece| piece.name.as_str()).collect();
     // One for each of the 16 instances, and one more where a filter calls back into the map that calls it.
-    for expected in ["main", "main_brdf", "main_brdf_ndf", "main_lights_b_visibility", "main_lights_b_visibility_upper", "params"] {
+    for expected in [
+        "main",
+        "main_brdf",
+        "main_brdf_ndf",
+        "main_lights_b_visibility",
+        "main_lights_b_visibility_upper",
+        "params",
+    ] {
         assert!(names.contains(&expected), "{expected} is not in {names:?}");
     }
     assert_eq!(names.last(), Some(&"main"), "the entry points come last");

@@ -37,7 +37,11 @@ impl Sources {
     /// # Errors
     /// naga_oil refuses a module.
     pub fn composer(&self, validating: bool) -> Result<Composer, String> {
-        let composer = if validating { Composer::default() } else { Composer::non_validating() };
+        let composer = if validating {
+            Composer::default()
+        } else {
+            Composer::non_validating()
+        };
         let mut composer = composer.with_capabilities(Capabilities::all());
         let modules = self.0.split_last().map_or(&[][..], |(_, modules)| modules);
         for (name, source) in modules {

@@ -29,8 +29,10 @@ impl Compiler {
             text.push_str(&piece.text());
             resolver.add_module(path(&piece.name)?, text.into());
         }
-        let mut options = wesl::CompileOptions::default();
-        options.validate = checks;
+        let options = wesl::CompileOptions {
+            validate: checks,
+            ..Default::default()
+        };
         let mut wesl = Wesl::new("").set_custom_resolver(resolver);
         wesl.set_options(options).use_sourcemap(checks);
         let root = pieces.last().ok_or("no pieces")?;
@@ -51,5 +53,7 @@ impl Compiler {
 }
 
 fn path(name: &str) -> Result<ModulePath, String> {
-    format!("package::{name}").parse().map_err(|_| format!("`{name}` is no path of wesl's"))
+    format!("package::{name}")
+        .parse()
+        .map_err(|_| format!("`{name}` is no path of wesl's"))
 }
