@@ -62,38 +62,49 @@ const STEPS: [&str; 15] = [
     COLD,
 ];
 
-/// What is asked for, who answers it here, and who else: the sum of these rows.
-const QUESTIONS: [(&str, &str, &[(&str, &[&str])]); 4] = [
-    (
-        "a validated module, one more of many",
-        WARM,
-        &[
+/// Something that is asked for.
+struct Question {
+    what: &'static str,
+    /// The row that answers it here.
+    ours: &'static str,
+    /// Who else answers it, each with the rows whose sum it takes.
+    others: &'static [(&'static str, &'static [&'static str])],
+}
+
+const MODULE_FROM_TEXT: (&str, &[&str]) = ("wesl and naga", &[WESL_LEAN, WESL_NAGA]);
+const UNCOMPOSED: (&str, &[&str]) = ("concatenation", &[CONCATENATION]);
+
+const QUESTIONS: [Question; 4] = [
+    Question {
+        what: "a validated module, one more of many",
+        ours: WARM,
+        others: &[
             ("naga_oil", &[OIL_WARM]),
             ("naga_oil, validating once", &[OIL_WARM_LEAN]),
-            ("wesl and naga", &[WESL_LEAN, WESL_NAGA]),
-            ("concatenation", &[CONCATENATION]),
+            MODULE_FROM_TEXT,
+            UNCOMPOSED,
         ],
-    ),
-    (
-        "a validated module, from nothing",
-        COLD,
-        &[
+    },
+    Question {
+        what: "a validated module, from nothing",
+        ours: COLD,
+        others: &[
             ("naga_oil", &[OIL_COLD]),
             ("naga_oil, validating once", &[OIL_COLD_LEAN]),
-            ("wesl and naga", &[WESL_LEAN, WESL_NAGA]),
-            ("concatenation", &[CONCATENATION]),
+            MODULE_FROM_TEXT,
+            UNCOMPOSED,
         ],
-    ),
-    (
-        "WGSL text, one more of many",
-        WARM_TEXT,
-        &[("wesl", &[WESL]), ("wesl, no checks", &[WESL_LEAN])],
-    ),
-    (
-        "WGSL text, from nothing",
-        COLD_TEXT,
-        &[("wesl", &[WESL]), ("wesl, no checks", &[WESL_LEAN])],
-    ),
+    },
+    Question {
+        what: "WGSL text, one more of many",
+        ours: WARM_TEXT,
+        others: &[("wesl", &[WESL]), ("wesl, no checks", &[WESL_LEAN])],
+    },
+    Question {
+        what: "WGSL text, from nothing",
+        ours: COLD_TEXT,
+        others: &[("wesl", &[WESL]), ("wesl, no checks", &[WESL_LEAN])],
+    },
 ];
 
 fn main() -> ExitCode {
@@ -250,12 +261,12 @@ fn sum(times: &[Times], names: &[&str]) -> Result<Times, String> {
 
 fn answers(times: &[Times]) -> Result<String, String> {
     let mut rows = Vec::new();
-    for (question, ours, others) in QUESTIONS {
+    for Question { what, ours, others } in QUESTIONS {
         let ours = of(times, ours)?;
         for (name, parts) in others {
             let theirs = sum(times, parts)?;
             rows.push(vec![
-                question.to_owned(),
+                what.to_owned(),
                 (*name).to_owned(),
                 time(ours.percentile(0.5)),
                 time(theirs.percentile(0.5)),
@@ -272,12 +283,12 @@ fn answers(times: &[Times]) -> Result<String, String> {
 /// Says where somebody else is faster.
 fn ahead(times: &[Times]) -> Result<String, String> {
     let mut found = Vec::new();
-    for (question, ours, others) in QUESTIONS {
+    for Question { what, ours, others } in QUESTIONS {
         let ours = of(times, ours)?;
         for (name, parts) in others {
             let ratio = sum(times, parts)?.ratio_to(ours);
             if ratio < 1.0 {
-                found.push(format!("{name} for {question} ({} of our time)", digits(ratio)));
+                found.push(format!("{name} for {what} ({} of our time)", digits(ratio)));
             }
         }
     }
