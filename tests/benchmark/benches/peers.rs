@@ -44,12 +44,15 @@ const PEERS: [&str; 13] = [
     WESL_NAGA,
 ];
 
-const STEPS: [&str; 15] = [
+const FINISH: &str = "finish a plan: IR, canonical hash, validation, reflection";
+
+const STEPS: [&str; 16] = [
     "load the library's manifests",
     "plan: resolve, reach, find what is alive, bind, name",
     "write the plan as IR",
     "canonical hash",
     VALIDATION,
+    FINISH,
     WARM,
     "write the plan as source",
     "reflection as JSON",
@@ -203,21 +206,26 @@ fn measured(subject: &Subject, pieces: &[Piece], count: usize) -> Result<Vec<Tim
         Candidate::new(STEPS[1], || said(catalog.plan(recipe, "main"))),
         Candidate::new(STEPS[2], || said(plan.link())),
         Candidate::new(STEPS[3], || Ok(hash::structural_hash(&linked))),
-        Candidate::new(STEPS[6], || said(plan.source())),
-        Candidate::new(STEPS[7], || serde_json::to_string(program.reflection()).map_err(|e| e.to_string())),
         Candidate::with_input(
-            STEPS[8],
+            FINISH,
+            || catalog.plan(recipe, "main"),
+            |plan| said(plan.and_then(|plan| catalog.finish(plan))),
+        ),
+        Candidate::new(STEPS[7], || said(plan.source())),
+        Candidate::new(STEPS[8], || serde_json::to_string(program.reflection()).map_err(|e| e.to_string())),
+        Candidate::with_input(
+            STEPS[9],
             || linked.clone(),
             |mut module| {
                 compact::compact(&mut module, compact::KeepUnused::No);
                 Ok(module)
             },
         ),
-        writes(STEPS[9], Target::WgslFromIr),
-        writes(STEPS[10], Target::SpirV),
-        writes(STEPS[11], Target::Hlsl),
-        writes(STEPS[12], Target::Msl),
-        Candidate::new(STEPS[13], || parse(program.wgsl())),
+        writes(STEPS[10], Target::WgslFromIr),
+        writes(STEPS[11], Target::SpirV),
+        writes(STEPS[12], Target::Hlsl),
+        writes(STEPS[13], Target::Msl),
+        Candidate::new(STEPS[14], || parse(program.wgsl())),
     ];
     rounds(candidates, count)
 }
