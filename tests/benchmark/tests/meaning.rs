@@ -129,7 +129,8 @@ fn the_pieces_are_the_whole_shader() {
 fn permutations_compile_and_differ() {
     let catalog = Subject::load().unwrap().catalog;
     let many = permutations::permutations(&catalog, "forward", 1000).unwrap();
-    assert_eq!(many.len(), 1000);
+    let texts: std::collections::BTreeSet<String> = many.iter().map(|node| format!("{node:?}")).collect();
+    assert_eq!((many.len(), texts.len()), (1000, 1000));
     assert_eq!(many[..100], permutations::permutations(&catalog, "forward", 100).unwrap());
     let mut hashes = std::collections::BTreeSet::new();
     for node in &many[..60] {

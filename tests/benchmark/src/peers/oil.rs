@@ -37,12 +37,10 @@ impl Sources {
     /// # Errors
     /// naga_oil refuses a module.
     pub fn composer(&self, validating: bool) -> Result<Composer, String> {
-        let composer = if validating {
-            Composer::default()
-        } else {
-            Composer::non_validating()
-        };
-        let mut composer = composer.with_capabilities(Capabilities::all());
+        // Not `non_validating` and `with_capabilities`: each builds all of a composer, regular expressions and all, once more.
+        let mut composer = Composer::default();
+        composer.validate = validating;
+        composer.capabilities = Capabilities::all();
         let modules = self.0.split_last().map_or(&[][..], |(_, modules)| modules);
         for (name, source) in modules {
             let added = composer.add_composable_module(ComposableModuleDescriptor {
