@@ -37,7 +37,7 @@ impl Sources {
     /// # Errors
     /// naga_oil refuses a module.
     pub fn composer(&self, validating: bool) -> Result<Composer, String> {
-        // Not `non_validating` and `with_capabilities`: each builds all of a composer, regular expressions and all, once more.
+        // Not by `with_capabilities`, which builds a whole composer, regular expressions and all, once more.
         let mut composer = Composer::default();
         composer.validate = validating;
         composer.capabilities = Capabilities::all();
