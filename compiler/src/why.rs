@@ -179,8 +179,7 @@ fn reads_param(function: &naga::Function, unit: &crate::parse::Unit, param: &str
     let constant = crate::parse::constant_name(param);
     function.expressions.iter().any(|(_, e)| match *e {
         naga::Expression::AccessIndex { base, index: member } => {
-            Some(member) == index
-                && matches!(function.expressions[base], naga::Expression::GlobalVariable(g) if unit.params == Some(g))
+            Some(member) == index && matches!(function.expressions[base], naga::Expression::GlobalVariable(g) if unit.params == Some(g))
         }
         naga::Expression::Constant(c) => unit.ir.constants[c].name.as_ref() == Some(&constant),
         naga::Expression::Override(o) => unit.ir.overrides[o].name.as_ref() == Some(&constant),

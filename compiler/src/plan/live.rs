@@ -242,7 +242,10 @@ impl<'p> Walk<'p> {
 
     fn store(&mut self, id: usize, store: &'p Store) {
         let home = self.functions[id].home;
-        let members = store.path.iter().filter_map(|&(ty, member)| Some((self.structs.id(home, ty)?, member)));
+        let members = store
+            .path
+            .iter()
+            .filter_map(|&(ty, member)| Some((self.structs.id(home, ty)?, member)));
         let dead = members.clone().find(|&(s, member)| !self.structs.is_live(s, member));
         if let Some(dead) = dead {
             if !self.acts(id, store.value) && !self.acts(id, store.pointer) {
@@ -261,7 +264,9 @@ impl<'p> Walk<'p> {
 
     /// The pointer of a store: its members are written, not read.
     fn address(&mut self, id: usize, mut handle: Handle<Expression>) {
-        let Some(function) = self.functions[id].ir(self.homes) else { return };
+        let Some(function) = self.functions[id].ir(self.homes) else {
+            return;
+        };
         loop {
             self.states[id].live[handle.index()] = true;
             match function.expressions[handle] {

@@ -6,7 +6,13 @@ use super::{Planned, Structs};
 use crate::parse::{Unit, struct_type};
 
 /// Whether a store writes a member that nobody reads.
-pub fn is_dead_store(planned: &Planned, structs: &Structs, unit: &Unit, function: &naga::Function, mut pointer: Handle<Expression>) -> bool {
+pub fn is_dead_store(
+    planned: &Planned,
+    structs: &Structs,
+    unit: &Unit,
+    function: &naga::Function,
+    mut pointer: Handle<Expression>,
+) -> bool {
     loop {
         match function.expressions[pointer] {
             Expression::AccessIndex { base, index } => {
