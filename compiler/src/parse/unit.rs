@@ -9,10 +9,12 @@ use naga::{Handle, TypeInner};
 
 use super::checks;
 use super::compose::{Composed, Interface, Needs, Origin, compose};
+use super::cuts::{Cuts, cuts};
 use super::facts::{Facts, facts};
 use super::filter::{Filter, word_hash};
+use super::mentions::{Mention, mentions};
 use super::pure::droppable;
-use super::scan::Scan;
+use super::scan::{Item, Scan};
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::upstream::guarded;
 
@@ -56,6 +58,10 @@ pub struct Unit {
     pub words_filter: Filter,
     /// Facts of the functions: by function handle, then by entry point.
     pub facts: Vec<Facts>,
+    /// Their text, as far as it may go: by function handle, then by entry point.
+    pub cuts: Vec<Cuts>,
+    /// What each item of the author's file mentions.
+    pub mentions: Vec<Vec<Mention>>,
     /// Whether a call of a function, if it is pure, may go when nobody reads its result. By handle.
     pub droppable: Vec<bool>,
     /// The variable `params`, where there are uniform parameters.
@@ -115,6 +121,8 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
         words: HashSet::default(),
         words_filter: Filter::default(),
         facts: Vec::new(),
+        cuts: Vec::new(),
+        mentions: Vec::new(),
         droppable: Vec::new(),
         params: None,
         instances: None,
@@ -135,6 +143,10 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     unit.words = words(&unit);
     unit.words.iter().for_each(|word| unit.words_filter.insert(word_hash(word)));
     unit.facts = facts(&unit);
+    unit.cuts = functions_of(&unit)
+        .map(|(f, item)| item.map_or_else(Cuts::default, |item| cuts(&unit, f, item)))
+        .collect();
+    unit.mentions = unit.scan.items.iter().map(|item| mentions(&unit, item)).collect();
     unit.droppable = unit.ir.functions.iter().map(|(_, f)| droppable(&unit.ir, f)).collect();
     unit.params = variable(&unit, "params", &Origin::Params);
     unit.instances = variable(&unit, "instances", &Origin::Instances);
@@ -335,6 +347,14 @@ fn words(unit: &Unit) -> HashSet<String> {
         words.extend(mentioned.filter(|w| unit.origin(w).is_none()).map(str::to_owned));
     }
     words
+}
+
+/// Functions by handle, then entry points, with their items in the author's text.
+fn functions_of(unit: &Unit) -> impl Iterator<Item = (&naga::Function, Option<&Item>)> {
+    let functions = unit.ir.functions.iter();
+    let functions = functions.map(|(_, f)| (f, f.name.as_deref().unwrap_or_default()));
+    let entries = unit.ir.entry_points.iter().map(|e| (&e.function, e.name.as_str()));
+    functions.chain(entries).map(|(f, name)| (f, unit.scan.item(name)))
 }
 
 fn variable(unit: &Unit, name: &str, origin: &Origin) -> Option<Handle<naga::GlobalVariable>> {

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use naga::Handle;
 
 use crate::manifest::Combine;
-use crate::parse::{Facts, Unit};
+use crate::parse::{Cuts, Facts, Unit};
 use crate::resolve::{Instances, Tree};
 
 pub use bindings::{Block, GROUPS, PlannedGlobal, declared, declaring};
@@ -168,6 +168,16 @@ impl Planned {
         match self.body {
             Body::Function(handle) => Some(&unit.facts[handle.index()]),
             Body::Entry(index) => Some(&unit.facts[unit.ir.functions.len() + index]),
+            Body::Combined { .. } => None,
+        }
+    }
+
+    /// The stretches of its text that may go; none for a combined function.
+    pub fn cuts<'p>(&self, homes: &'p [Home]) -> Option<&'p Cuts> {
+        let unit = &homes[self.home].unit;
+        match self.body {
+            Body::Function(handle) => Some(&unit.cuts[handle.index()]),
+            Body::Entry(index) => Some(&unit.cuts[unit.ir.functions.len() + index]),
             Body::Combined { .. } => None,
         }
     }

@@ -16,7 +16,7 @@ pub struct Names(Vec<HomeNames>);
 struct HomeNames {
     /// By the item's index in the unit's scan.
     items: Vec<Option<String>>,
-    /// Of what the linker itself adds to the unit: name there, emitted name.
+    /// Of what the linker itself adds to the unit: name there, emitted name. Constants, overrides, `Instance`, `instances`.
     added: Vec<(String, String)>,
 }
 
@@ -28,6 +28,16 @@ impl Names {
             Some(index) => names.items.get(index)?.as_deref(),
             None => names.added.iter().find(|(own, _)| own == name).map(|(_, emitted)| emitted.as_str()),
         }
+    }
+
+    /// The emitted name of an item by its index in the unit's scan.
+    pub fn of_item(&self, home: usize, item: usize) -> Option<&str> {
+        self.0.get(home)?.items.get(item)?.as_deref()
+    }
+
+    /// The emitted name of what the linker adds to a unit, by its index: constants, overrides, `Instance`, `instances`.
+    pub fn of_added(&self, home: usize, index: usize) -> Option<&str> {
+        self.0.get(home)?.added.get(index).map(|(_, emitted)| emitted.as_str())
     }
 
     /// All of them: home, name there, emitted name.
@@ -82,7 +92,7 @@ pub fn assign(plan: &mut Plan) {
             }
             given.items[index] = Some(name);
         }
-        for name in unit.needs.overrides.keys().chain(unit.needs.constants.keys()) {
+        for name in unit.needs.constants.keys().chain(unit.needs.overrides.keys()) {
             given.added.push((constant_name(name), taken.free(joined(prefix, name))));
         }
         if !unit.needs.instances.is_empty() {
