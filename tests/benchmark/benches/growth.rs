@@ -11,6 +11,9 @@ use shadewright_benchmark::process::resident;
 use shadewright_benchmark::table::{Arguments, bytes, table, time};
 use shadewright_compiler::{Catalog, Program, Recipe, Report, Validated, validate};
 
+/// Every measurement is made this often; the middle one counts.
+const REPEATS: usize = 3;
+
 /// What stays of every permutation.
 const KEPT: [(&str, &str); 3] = [
     ("program", "program: IR, its validation, reflection, plan"),
@@ -43,12 +46,10 @@ fn all(arguments: &Arguments) -> Result<(), String> {
     for (kept, described) in KEPT {
         for count in counts {
             for threads in [1usize, 2] {
-                // The middle of three, where that is quick.
-                let repeats = if *count <= 1000 { 3 } else { 1 };
-                let answers: Result<Vec<[f64; 6]>, String> = (0..repeats).map(|_| child(&own, kept, *count, threads)).collect();
+                let answers: Result<Vec<[f64; 6]>, String> = (0..REPEATS).map(|_| child(&own, kept, *count, threads)).collect();
                 let mut answers = answers?;
                 answers.sort_by(|a, b| a[2].total_cmp(&b[2]));
-                let [made, different, seconds, before, after, most] = answers[repeats / 2];
+                let [made, different, seconds, before, after, most] = answers[REPEATS / 2];
                 let memory = |value: f64| if after > 0.0 { bytes(value) } else { "-".to_owned() };
                 rows.push(vec![
                     described.to_owned(),
