@@ -1,6 +1,7 @@
 //! From the entry points to every function that is called, across modules.
 
 use rustc_hash::FxHashMap as HashMap;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use naga::Handle;
@@ -137,24 +138,8 @@ impl Reach<'_> {
             self.push_home(unit, Some(index), prefix);
         }
         // Every interface that a unit names.
-        let mut names: Vec<String> = Vec::new();
-        for home in &self.homes {
-            let mut own: Vec<&String> = home
-                .unit
-                .composed
-                .names
-                .values()
-                .filter_map(|o| match o {
-                    Origin::Interface(category) | Origin::Offered { interface: category, .. } => Some(category),
-                    _ => None,
-                })
-                .collect();
-            own.extend(home.unit.needs.slots.iter().map(|s| &s.interface));
-            own.extend(&home.unit.needs.implements);
-            names.extend(own.into_iter().cloned());
-        }
-        names.sort();
-        names.dedup();
+        let named: BTreeSet<&String> = self.homes.iter().flat_map(|home| &home.unit.interfaces).collect();
+        let mut names: Vec<String> = named.into_iter().cloned().collect();
         let mut next = 0;
         while next < names.len() {
             let name = names[next].clone();
