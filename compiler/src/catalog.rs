@@ -8,7 +8,7 @@ use naga::valid::Capabilities;
 
 use crate::contracts;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
-use crate::library::Library;
+use crate::library::{Library, unreadable};
 use crate::limits;
 use crate::manifest::{
     CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, check_category, check_module, parse_category, parse_module, typed,
@@ -305,8 +305,8 @@ impl Catalog {
             return Ok(Arc::clone(done));
         }
         let path = format!("{0}/{1}/{1}.wgsl", module.category, module.name);
-        let file = match read(self.library.as_ref(), &path)? {
-            Some(text) => SourceFile::new(path, text),
+        let file = match self.library.file(&path)? {
+            Some(file) => file,
             None => {
                 return Err(Diagnostic::new(codes::MISSING_WGSL, format!("`{path}` is not there"))
                     .at(&module.source, 0..0, "declared here")
@@ -491,9 +491,7 @@ fn sorted(mut names: Vec<String>) -> Vec<String> {
 }
 
 fn read(library: &dyn Library, path: &str) -> Result<Option<String>, Report> {
-    library
-        .read(path)
-        .map_err(|why| Diagnostic::new(codes::UNREADABLE_FILE, format!("`{path}` cannot be read: {why}")).into())
+    library.read(path).map_err(|why| unreadable(path, &why))
 }
 
 /// A panic while the lock was held can only have left a cache entry out: the maps are never half changed.

@@ -273,7 +273,8 @@ impl Writer<'_> {
         edits.push((item.name_span.clone(), planned.name.clone()));
         edits.extend(dead.into_iter().map(|range| (range, String::new())));
         let mut text = String::new();
-        let line = unit.file.position(item.span.start).line;
+        let (file, span) = unit.file.origin(item.span.clone());
+        let line = file.position(span.start).line;
         let place = home.instance.map_or_else(String::new, |i| {
             let paths: Vec<&str> = plan.instances.list[i]
                 .nodes
@@ -282,7 +283,7 @@ impl Writer<'_> {
                 .collect();
             format!(" at {}", paths.join(", "))
         });
-        let _ = writeln!(text, "// {}:{line}{place}", unit.file.name);
+        let _ = writeln!(text, "// {}:{line}{place}", file.name);
         for directive in unit.scan.items.iter().filter(|i| i.kind == ItemKind::Directive) {
             // A filter of the module's file holds for the module's functions alone.
             let directive = unit.file.text[directive.span.clone()].trim_end_matches(';');

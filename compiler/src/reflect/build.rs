@@ -193,13 +193,14 @@ fn functions(plan: &Plan) -> Vec<FunctionOrigin> {
             let combined = matches!(planned.body, Body::Combined { .. });
             let item = home.unit.scan.item(&source).filter(|_| !combined);
             let node = home.instance.map(|i| &plan.tree.nodes[plan.instances.list[i].node]);
+            let (file, span) = home.unit.file.origin(item.map_or(0..0, |i| i.span.clone()));
             FunctionOrigin {
                 name: planned.name.clone(),
                 source,
                 instance: home.instance.map(|i| plan.instances.list[i].name.clone()),
                 module: node.map_or_else(|| home.unit.interface.clone().unwrap_or_default(), |n| n.module.name.clone()),
-                file: home.unit.file.name.clone(),
-                line: item.map_or(0, |i| home.unit.file.position(i.span.start).line as u32),
+                line: item.map_or(0, |_| file.position(span.start).line as u32),
+                file: file.name.clone(),
             }
         })
         .collect()
