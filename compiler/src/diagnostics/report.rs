@@ -46,11 +46,7 @@ impl SourceFile {
 
     /// The author's file and the bytes of it that these bytes come from: itself, where the author wrote it as it stands.
     pub fn origin(self: &Arc<Self>, span: Range<usize>) -> (Arc<Self>, Range<usize>) {
-        let within = |byte: usize| {
-            let part = self.parts.get(self.parts.partition_point(|part| part.text.end <= byte))?;
-            part.text.contains(&byte).then_some(part)
-        };
-        let Some(first) = within(span.start) else {
+        let Some(first) = self.part(span.start) else {
             return (Arc::clone(self), span);
         };
         let copied = |part: &Part| part.text.len() == part.span.len();
@@ -59,13 +55,28 @@ impl SourceFile {
         } else {
             first.span.start
         };
-        let last = within(span.end.saturating_sub(1).max(span.start)).filter(|last| Arc::ptr_eq(&last.file, &first.file));
+        let last = self.part(span.end.saturating_sub(1).max(span.start)).filter(|last| Arc::ptr_eq(&last.file, &first.file));
         let end = match last {
             Some(last) if copied(last) => last.span.start + (span.end - last.text.start),
             Some(last) => last.span.end,
             None => first.span.end,
         };
         (Arc::clone(&first.file), start..end.max(start))
+    }
+
+    fn part(&self, byte: usize) -> Option<&Part> {
+        let part = self.parts.get(self.parts.partition_point(|part| part.text.end <= byte))?;
+        part.text.contains(&byte).then_some(part)
+    }
+
+    /// Name of the author's file and line of it for a byte of the text, which stands on this line of the text.
+    pub(crate) fn line_of(&self, byte: usize, line: usize) -> (&str, usize) {
+        let Some(part) = self.part(byte) else {
+            return (&self.name, line);
+        };
+        let copied = part.text.len() == part.span.len();
+        let start = part.span.start + if copied { byte - part.text.start } else { 0 };
+        (&part.file.name, part.file.position(start).line)
     }
 
     /// Line and column of a byte of the text; a byte past the end counts as the end.

@@ -108,7 +108,7 @@ impl<'p> Linker<'p> {
 
     pub fn name(&self, home: usize, name: &Option<String>) -> Option<String> {
         let name = name.as_ref()?;
-        Some(self.plan.names.get(&(home, name.clone())).unwrap_or(name).clone())
+        Some(self.plan.name(home, name).unwrap_or(name).to_owned())
     }
 
     pub fn global_expression(&mut self, home: usize, handle: Handle<Expression>) -> Handle<Expression> {

@@ -79,7 +79,7 @@ impl Linker<'_> {
             return done;
         };
         let s = &plan.structs.list[id];
-        let name = plan.names.get(&(s.home, s.name.clone())).unwrap_or(&s.name).clone();
+        let name = plan.name(s.home, &s.name).unwrap_or(&s.name).to_owned();
         let kept: Vec<StructMember> = members
             .iter()
             .enumerate()

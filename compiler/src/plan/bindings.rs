@@ -2,13 +2,13 @@
 
 use rustc_hash::FxHashSet as HashSet;
 
-use naga::{AddressSpace, Expression, GlobalVariable, Handle};
+use naga::{AddressSpace, GlobalVariable, Handle};
 
 use super::Plan;
 use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::Resource;
-use crate::parse::{Origin, Unit};
+use crate::parse::Origin;
 
 /// Names of the bind groups' parameter blocks, by group: frame, lights and shadows, material, pass.
 pub const GROUPS: [&str; 4] = ["frame", "light", "material", "pass"];
@@ -48,18 +48,6 @@ pub struct BlockMember {
     pub name: String,
 }
 
-/// Whether a variable is the unit's `params`.
-pub fn is_params(unit: &Unit, global: Handle<GlobalVariable>) -> bool {
-    let name = unit.ir.global_variables[global].name.as_deref();
-    name == Some("params") && matches!(unit.origin("params"), Some(Origin::Params))
-}
-
-/// Whether a variable is the unit's `instances`.
-pub fn is_instances(unit: &Unit, global: Handle<GlobalVariable>) -> bool {
-    let name = unit.ir.global_variables[global].name.as_deref();
-    name == Some("instances") && matches!(unit.origin("instances"), Some(Origin::Instances))
-}
-
 /// Numbers what is reached: in each group the parameters first, then the interfaces' resources, then those of the
 /// instances in tree order, each in the order of its text.
 pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
@@ -82,7 +70,7 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
     for home in order {
         let unit = &plan.homes[home].unit;
         for (handle, global) in unit.ir.global_variables.iter() {
-            if !reached.contains(&(home, handle)) || is_params(unit, handle) {
+            if !reached.contains(&(home, handle)) || unit.params == Some(handle) {
                 continue;
             }
             let bound = matches!(
@@ -107,10 +95,10 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
 fn reached(plan: &Plan) -> HashSet<(usize, Handle<GlobalVariable>)> {
     let mut reached = HashSet::default();
     for planned in &plan.functions {
-        let Some(function) = planned.ir(&plan.homes) else { continue };
-        for (handle, expression) in function.expressions.iter() {
-            if let (Expression::GlobalVariable(global), true) = (expression, planned.live[handle.index()]) {
-                reached.insert(declaring(plan, planned.home, *global));
+        let Some(facts) = planned.facts(&plan.homes) else { continue };
+        for &(handle, global) in &facts.globals {
+            if planned.live[handle.index()] {
+                reached.insert(declaring(plan, planned.home, global));
             }
         }
     }
@@ -184,7 +172,7 @@ fn group_of(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVa
         None => unit.interface.as_deref(),
     };
     let group = category.and_then(|c| catalog.category(c)).map_or(3, |c| c.manifest.group);
-    if is_instances(unit, handle) {
+    if unit.instances == Some(handle) {
         return Ok(group);
     }
     let Some(resource) = declared(catalog, plan, home, name) else {

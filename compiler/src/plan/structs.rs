@@ -19,6 +19,19 @@ pub struct Struct {
     pub live: Vec<bool>,
 }
 
+impl Struct {
+    /// The member that stays of a struct whose members nobody reads: a built-in value, or else the first.
+    pub fn kept_when_empty(&self, homes: &[Home]) -> u32 {
+        let mut types = homes[self.home].unit.ir.types.iter();
+        let declared = types.find_map(|(_, t)| match &t.inner {
+            naga::TypeInner::Struct { members, .. } if t.name.as_deref() == Some(&self.name) => Some(members),
+            _ => None,
+        });
+        let is_builtin = |m: &naga::StructMember| matches!(m.binding, Some(naga::Binding::BuiltIn(_)));
+        declared.and_then(|members| members.iter().position(is_builtin)).unwrap_or(0) as u32
+    }
+}
+
 /// All structs of the units in a plan.
 #[derive(Debug, Default)]
 pub struct Structs {
