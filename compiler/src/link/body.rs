@@ -55,6 +55,7 @@ impl Linker<'_> {
                 copying.exprs[handle.index()] = Some(out.expressions.append(patched, span));
             }
         }
+        out.named_expressions.reserve(source.named_expressions.len());
         for (&handle, name) in &source.named_expressions {
             if let Some(done) = copying.exprs[handle.index()] {
                 out.named_expressions.insert(done, name.clone());

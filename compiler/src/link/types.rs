@@ -8,7 +8,7 @@ impl Linker<'_> {
     /// The linked type of a unit's type.
     pub fn ty(&mut self, home: usize, handle: Handle<Type>) -> Handle<Type> {
         let home = self.plan.shared_home(home);
-        if let Some(&done) = self.copied[home].types.get(&handle) {
+        if let Some(done) = self.copied[home].types.get(handle) {
             return done;
         }
         let plan = self.plan;

@@ -7,7 +7,7 @@ use naga::{AddressSpace, GlobalVariable, Handle};
 use super::Plan;
 use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, codes};
-use crate::manifest::Resource;
+use crate::manifest::{Resource, ResourceKind};
 use crate::parse::Origin;
 
 /// Names of the bind groups' parameter blocks, by group: frame, lights and shadows, material, pass.
@@ -22,6 +22,8 @@ pub struct PlannedGlobal {
     pub handle: Handle<GlobalVariable>,
     /// Group and binding; `None` for private and workgroup variables.
     pub binding: Option<(u32, u32)>,
+    /// What its manifest says of it; nothing for `instances` and for private and workgroup variables.
+    pub declared: Option<ResourceKind>,
 }
 
 /// The uniform parameters of one group.
@@ -77,15 +79,22 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
                 global.space,
                 AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Handle
             );
+            let mut declared = None;
             // Only a text that is complete in itself brings bindings.
             let mut binding = global.binding.as_ref().map(|b| (b.group, b.binding));
             if bound && binding.is_none() {
-                let group = group_of(catalog, plan, home, handle)?;
+                let group;
+                (group, declared) = place(catalog, plan, home, handle)?;
                 let number = &mut next[group as usize];
                 binding = Some((group, *number));
                 *number += 1;
             }
-            plan.globals.push(PlannedGlobal { home, handle, binding });
+            plan.globals.push(PlannedGlobal {
+                home,
+                handle,
+                binding,
+                declared,
+            });
         }
     }
     Ok(())
@@ -149,7 +158,7 @@ fn block_members(catalog: &Catalog, plan: &Plan, group: u32) -> Vec<BlockMember>
 }
 
 /// What a home's manifest says of a variable.
-pub fn declared<'c>(catalog: &'c Catalog, plan: &'c Plan, home: usize, name: &str) -> Option<&'c Resource> {
+fn declared<'c>(catalog: &'c Catalog, plan: &'c Plan, home: usize, name: &str) -> Option<&'c Resource> {
     match plan.homes[home].instance {
         Some(instance) => plan.tree.nodes[plan.instances.list[instance].node]
             .module
@@ -164,7 +173,8 @@ pub fn declared<'c>(catalog: &'c Catalog, plan: &'c Plan, home: usize, name: &st
     }
 }
 
-fn group_of(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVariable>) -> Result<u32, Report> {
+/// The bind group of a resource, and what its manifest says of it.
+fn place(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVariable>) -> Result<(u32, Option<ResourceKind>), Report> {
     let unit = &plan.homes[home].unit;
     let name = unit.ir.global_variables[handle].name.as_deref().unwrap_or_default();
     let category = match plan.homes[home].instance {
@@ -173,7 +183,7 @@ fn group_of(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVa
     };
     let group = category.and_then(|c| catalog.category(c)).map_or(3, |c| c.manifest.group);
     if unit.instances == Some(handle) {
-        return Ok(group);
+        return Ok((group, None));
     }
     let Some(resource) = declared(catalog, plan, home, name) else {
         let span = unit.scan.item(name).map_or(0..0, |i| i.name_span.clone());
@@ -185,5 +195,5 @@ fn group_of(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVa
         .note("the host must know how to fill it: add it to `resources` of the manifest beside this file")
         .into());
     };
-    Ok(resource.group.unwrap_or(group))
+    Ok((resource.group.unwrap_or(group), Some(resource.kind.clone())))
 }

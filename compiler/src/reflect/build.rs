@@ -6,15 +6,14 @@ use super::{
     Binding, BindingType, Fill, FunctionOrigin, Instance, Layouts, Override, ParamPlace, ParamUse, Pass, Reflection, SCHEMA_VERSION,
     binding_type, entry_point, stages_using, wgsl_type_name,
 };
-use crate::catalog::Catalog;
 use crate::parse::constant_name;
-use crate::plan::{Body, Plan, declared};
+use crate::plan::{Body, Plan};
 use crate::validate::Validated;
 
 /// Reflects a pass.
-pub fn reflect(catalog: &Catalog, plan: &Plan, validated: &Validated, hash: u128, pass: &str) -> Reflection {
+pub fn reflect(plan: &Plan, validated: &Validated, hash: u128, pass: &str) -> Reflection {
     let module = validated.module();
-    let bindings = bindings(catalog, plan, validated);
+    let bindings = bindings(plan, validated);
     let reached: Vec<bool> = (0..plan.instances.list.len())
         .map(|i| plan.functions.iter().any(|f| f.home == i))
         .collect();
@@ -53,7 +52,7 @@ pub fn reflect(catalog: &Catalog, plan: &Plan, validated: &Validated, hash: u128
     }
 }
 
-fn bindings(catalog: &Catalog, plan: &Plan, validated: &Validated) -> Vec<Binding> {
+fn bindings(plan: &Plan, validated: &Validated) -> Vec<Binding> {
     let (module, info) = (validated.module(), validated.info());
     // Fails only for types that validation has already refused.
     let Ok(layouts) = Layouts::new(module) else { return Vec::new() };
@@ -66,14 +65,14 @@ fn bindings(catalog: &Catalog, plan: &Plan, validated: &Validated) -> Vec<Bindin
         let unit = &plan.homes[global.home].unit;
         let name = unit.ir.global_variables[global.handle].name.clone().unwrap_or_default();
         let instance = plan.homes[global.home].instance.map(|i| plan.instances.list[i].name.clone());
-        let fill = match (&instance, declared(catalog, plan, global.home, &name)) {
+        let fill = match (&instance, &global.declared) {
             (Some(instance), _) if unit.instances == Some(global.handle) => Fill::Instances {
                 instance: instance.clone(),
             },
-            (_, Some(resource)) => Fill::Resource {
+            (_, Some(kind)) => Fill::Resource {
                 instance,
                 resource: name,
-                declared: resource.kind.clone(),
+                declared: kind.clone(),
             },
             (_, None) => continue,
         };
@@ -199,7 +198,7 @@ fn functions(plan: &Plan) -> Vec<FunctionOrigin> {
                 instance: home.instance.map(|i| plan.instances.list[i].name.clone()),
                 module: node.map_or_else(|| home.unit.interface.clone().unwrap_or_default(), |n| n.module.name.clone()),
                 file: home.unit.file.name.clone(),
-                line: item.map_or(0, |i| home.unit.file.position(i.span.start).line as u32),
+                line: item.map_or(0, |i| i.line as u32),
             }
         })
         .collect()
