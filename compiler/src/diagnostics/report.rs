@@ -55,7 +55,9 @@ impl SourceFile {
         } else {
             first.span.start
         };
-        let last = self.part(span.end.saturating_sub(1).max(span.start)).filter(|last| Arc::ptr_eq(&last.file, &first.file));
+        let last = self
+            .part(span.end.saturating_sub(1).max(span.start))
+            .filter(|last| Arc::ptr_eq(&last.file, &first.file));
         let end = match last {
             Some(last) if copied(last) => last.span.start + (span.end - last.text.start),
             Some(last) => last.span.end,
