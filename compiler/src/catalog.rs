@@ -276,8 +276,8 @@ impl Catalog {
             return Ok(done);
         }
         let path = format!("{0}/{1}/{1}.wgsl", module.category, module.name);
-        let file = match read(self.library.as_ref(), &path)? {
-            Some(text) => SourceFile::new(path, text),
+        let file = match self.library.file(&path)? {
+            Some(file) => file,
             None => {
                 return Err(Diagnostic::new(codes::MISSING_WGSL, format!("`{path}` is not there"))
                     .at(&module.source, 0..0, "declared here")

@@ -192,13 +192,15 @@ fn functions(plan: &Plan) -> Vec<FunctionOrigin> {
             let combined = matches!(planned.body, Body::Combined { .. });
             let item = home.unit.scan.item(&source).filter(|_| !combined);
             let node = home.instance.map(|i| &plan.tree.nodes[plan.instances.list[i].node]);
+            let file = &home.unit.file;
+            let (file, line) = item.map_or((file.name.as_str(), 0), |i| file.line_of(i.span.start, i.line));
             FunctionOrigin {
                 name: planned.name.clone(),
                 source,
                 instance: home.instance.map(|i| plan.instances.list[i].name.clone()),
                 module: node.map_or_else(|| home.unit.interface.clone().unwrap_or_default(), |n| n.module.name.clone()),
-                file: home.unit.file.name.clone(),
-                line: item.map_or(0, |i| i.line as u32),
+                file: file.to_owned(),
+                line: line as u32,
             }
         })
         .collect()
