@@ -239,8 +239,8 @@ impl Catalog {
             }
         }
         contracts::named_functions(&interface, &used)?;
-        lock(&self.interfaces).insert(name.to_owned(), Arc::clone(&interface));
-        Ok(interface)
+        // Of threads that read the same, the first keeps its own and all go on with that one: plans compare by address.
+        Ok(Arc::clone(lock(&self.interfaces).entry(name.to_owned()).or_insert(interface)))
     }
 
     fn read_interface(&self, name: &str) -> Result<Interface, Report> {
@@ -290,8 +290,7 @@ impl Catalog {
         )?;
         contracts::interface_unit(&interface.category, &unit)?;
         let unit = Arc::new(unit);
-        lock(&self.interface_units).insert(name.to_owned(), Arc::clone(&unit));
-        Ok(unit)
+        Ok(Arc::clone(lock(&self.interface_units).entry(name.to_owned()).or_insert(unit)))
     }
 
     /// A module, parsed with these constants.
@@ -315,8 +314,7 @@ impl Catalog {
             }
         };
         let unit = Arc::new(self.parse_module(module, file, constants)?);
-        lock(&self.units).insert(key, Arc::clone(&unit));
-        Ok(unit)
+        Ok(Arc::clone(lock(&self.units).entry(key).or_insert(unit)))
     }
 
     /// Parses a module's text.
