@@ -5,12 +5,11 @@ use shadewright_compiler::manifest::{Dispatch, Node, PassDecl};
 
 use super::Frame;
 use super::fill::Look;
-use super::list::{List, world_bounds};
+use super::list::{Cut, List, world_bounds};
 use super::maps::{Map, maps_of, scene_bounds};
 use super::programs::Programs;
-use super::target::hdr_format;
 use super::view::Eye;
-use crate::gpu::{DataError, Gpu, RuntimeError};
+use crate::gpu::{DataError, RuntimeError};
 
 /// A frame's programs and views.
 pub(crate) struct Plan<'a> {
@@ -38,10 +37,12 @@ pub(crate) struct Compute<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// Compiles what the frame needs, on all cores, and finds out from where it is seen.
-    pub fn of(gpu: &Gpu, programs: &Programs, frame: &'a Frame) -> Result<Self, RuntimeError> {
-        let used = used_materials(frame)?;
-        let shown = used.iter().map(|id| &frame.materials[*id]).chain(&frame.display);
+    /// Compiles what the frame needs, on all cores, and finds out from where it is seen. `hdr` is the format of the HDR frame.
+    pub fn of(programs: &Programs, frame: &'a Frame, hdr: wgpu::TextureFormat, cut: &Cut) -> Result<Self, RuntimeError> {
+        let mut used = used_materials(frame)?;
+        used.retain(|id| !cut.lacks(*id));
+        let display = frame.display.as_ref().filter(|_| !cut.lacks(frame.materials.len()));
+        let shown = used.iter().map(|id| &frame.materials[*id]).chain(display);
         programs.get_many(shown.map(|m| ((*m.recipe).clone(), "main".to_owned())))?;
         let bounds = world_bounds(&frame.draws);
         let scene = scene_bounds(frame, &bounds);
@@ -53,10 +54,10 @@ impl<'a> Plan<'a> {
             display: None,
             before: Vec::new(),
             after: Vec::new(),
-            list: List::of_camera(&frame.draws, &bounds, &eye),
+            list: List::of_camera(&frame.draws, &bounds, &eye, cut),
             eye,
             map_lists: Vec::new(),
-            hdr: hdr_format(gpu, frame.draws.iter().any(|d| d.visible && d.alpha_blend)),
+            hdr,
         };
         for id in used {
             let material = &frame.materials[id];
@@ -73,7 +74,7 @@ impl<'a> Plan<'a> {
             plan.before.extend(computes(programs, &look)?);
             plan.forward[id] = Some(look);
         }
-        if let Some(material) = &frame.display {
+        if let Some(material) = display {
             let look = Look {
                 id: frame.materials.len(),
                 root: (*material.recipe).clone(),
@@ -85,7 +86,7 @@ impl<'a> Plan<'a> {
             plan.display = Some(look);
         }
         for map in &plan.maps {
-            let of = |eye| List::of_casters(&frame.draws, &bounds, eye);
+            let of = |eye| List::of_casters(&frame.draws, &bounds, eye, cut);
             plan.map_lists.push(map.eyes.iter().map(of).collect());
         }
         plan.casters = plan.find_casters(programs, frame)?;
