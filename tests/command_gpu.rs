@@ -283,6 +283,6 @@ fn needs_are_listed_without_a_driver() {
     assert!(last.starts_with(&format!("{} needs, ", rows.len())), "{last}");
     let one = finish(shadewright().env("RAYON_NUM_THREADS", "1").args(["render", scene, "--needs"]));
     assert_eq!(one.text(), text.text());
-    bad(&["render", scene], 2, &["--output", "--needs"]);
+    bad(&["render", scene], 2, &["-o <FILE>"]);
     bad(&["render", scene, "--needs", "-o", "a.png"], 2, &["--needs"]);
 }

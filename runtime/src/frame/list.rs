@@ -22,6 +22,8 @@ pub(crate) struct Cut<'a> {
     pub whole: bool,
     /// By material: `true` where there is nothing yet to draw it with. What lies beyond the end is there.
     pub absent: &'a [bool],
+    /// Only programs that are compiled already.
+    pub at_once: bool,
 }
 
 impl Cut<'_> {

@@ -102,6 +102,8 @@ pub fn needs(catalog: &Arc<Catalog>, frame: &Frame) -> Result<Vec<Need>, Runtime
 pub(crate) struct Request<'l> {
     pub stage: Stage,
     pub in_view: bool,
+    /// The looks of all that have it, by their materials; [`Request::look`] is that of the first.
+    pub materials: Vec<usize>,
     pub look: &'l Look<'l>,
     pub state: PipelineState,
     pub constants: Constants,
@@ -226,10 +228,16 @@ impl<'l> Found<'l> {
         let known = (stage, Arc::as_ptr(&look.program).addr(), state.clone(), bits(&constants));
         let place = *self.places.entry(known).or_insert(self.list.len());
         match self.list.get_mut(place) {
-            Some(request) => request.in_view |= in_view,
+            Some(request) => {
+                request.in_view |= in_view;
+                if !request.materials.contains(&look.id) {
+                    request.materials.push(look.id);
+                }
+            }
             None => self.list.push(Request {
                 stage,
                 in_view,
+                materials: vec![look.id],
                 look,
                 state,
                 constants,

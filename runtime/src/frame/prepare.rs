@@ -95,7 +95,11 @@ impl Renderer {
     }
 }
 
-const WHOLE: Cut = Cut { whole: true, absent: &[] };
+const WHOLE: Cut = Cut {
+    whole: true,
+    absent: &[],
+    at_once: false,
+};
 
 /// Counts steps and asks whether to go on.
 pub(crate) struct Steps<'s> {

@@ -14,6 +14,7 @@ use shadewright_compiler::program::Program;
 use super::Frame;
 use super::draw::Drawing;
 use super::fill::{Filler, Kept};
+use super::jobs::Jobs;
 use super::list::Cut;
 use super::maps::{DEPTH, Map};
 use super::needs::{distinct, requests};
@@ -37,8 +38,9 @@ pub(super) struct Made {
 /// Draws frames on one device. What it compiles, makes and uploads is kept for the next frame.
 pub struct Renderer {
     pub(super) gpu: Gpu,
-    pub(super) programs: Programs,
-    pub(super) pipelines: Pipelines,
+    pub(super) programs: Arc<Programs>,
+    pub(super) pipelines: Arc<Pipelines>,
+    pub(super) jobs: Jobs,
     uploads: Uploads,
     kept: Kept,
     formats: Option<HdrFormats>,
@@ -49,8 +51,9 @@ impl Renderer {
     pub fn new(gpu: &Gpu, catalog: Arc<Catalog>) -> Self {
         Self {
             gpu: gpu.clone(),
-            programs: Programs::new(catalog),
-            pipelines: Pipelines::new(gpu),
+            programs: Arc::new(Programs::new(catalog)),
+            pipelines: Arc::new(Pipelines::new(gpu)),
+            jobs: Jobs::default(),
             uploads: Uploads::default(),
             kept: Kept::new(),
             formats: None,
