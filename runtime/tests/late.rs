@@ -14,7 +14,7 @@ use shadewright_runtime::scene::SceneFile;
 static GPU: LazyLock<Gpu> = LazyLock::new(|| Gpu::headless().unwrap());
 static CATALOG: LazyLock<Arc<Catalog>> = LazyLock::new(|| Arc::new(Catalog::load(shadewright_modules::library()).unwrap()));
 
-/// Two balls: the first with a frozen roughness and colour, the second with nothing frozen.
+/// Two balls over a floor: the first with a frozen roughness and colour, the rest with nothing frozen.
 const SCENE: &str = r#"(
     camera: (eye: (0.0, 2.0, 6.0), target: (0.0, 0.5, 0.0)),
     size: (64, 48),
@@ -22,9 +22,9 @@ const SCENE: &str = r#"(
     pass: "forward",
     display: "display",
     post: [(module: "tonemap", fill: {"exposure": "log-average"})],
-    meshes: {"ball": Sphere(radius: 0.7)},
+    meshes: {"ball": Sphere(radius: 0.7), "floor": Plane(size: (6.0, 6.0))},
     materials: {
-        "special": {"material": (module: "metalness", freeze: {"roughness": 0.25, "base_color": (0.9, 0.1, 0.2)}), "brdf": "microfacet"},
+        "special": {"material": (module: "metalness", freeze: {"roughness": 0.25, "base_color": (0.9, 0.1, 0.2)}, params: {"emission": 40.0}), "brdf": "microfacet"},
         "plain": {"material": (module: "metalness", params: {"base_color": (0.1, 0.8, 0.2)}), "brdf": "lambert"},
     },
     lights: [(module: "directional", fields: {"direction": (-1.0, -2.0, -1.0), "illuminance": 1000.0},
@@ -32,6 +32,7 @@ const SCENE: &str = r#"(
     objects: [
         (mesh: "ball", material: "special", translate: (-1.0, 0.5, 0.0)),
         (mesh: "ball", material: "plain", translate: (1.0, 0.5, 0.0)),
+        (mesh: "floor", material: "plain"),
     ],
 )"#;
 
@@ -114,12 +115,13 @@ fn a_named_fallback_is_drawn_with_its_own_settings() {
     let (frame, fallbacks) = (frame(), only(Fallback::Material(black())));
     let mut renderer = renderer();
     let general = renderer.fallback_frame(&frame, &fallbacks);
-    assert_eq!(general.materials[0].recipe, black().recipe);
+    let mut expected = frame.clone();
+    expected.materials[0] = black();
     renderer.prepare(&general).unwrap();
     let (targets, late) = renderer.render_now(&frame, &fallbacks).unwrap();
     assert_eq!(parts(&late), [(SPECIAL, Some(0), true)]);
     let first = picture(&targets);
-    assert_eq!(first, fresh(&general));
+    assert_eq!(first, fresh(&expected));
     renderer.settle(&frame, &fallbacks).unwrap();
     let last = picture(&renderer.render_now(&frame, &fallbacks).unwrap().0);
     assert_eq!(last.0, fresh(&frame).0);
@@ -154,21 +156,21 @@ fn shadows_come_late_without_their_object() {
     let frame = frame();
     let mut unshadowed = frame.clone();
     unshadowed.draws.iter_mut().for_each(|draw| draw.casts_shadow = false);
-    let mut renderer = renderer();
-    renderer.prepare(&unshadowed).unwrap();
-    let (targets, late) = renderer.render_now(&frame, &Fallbacks::default()).unwrap();
-    assert_eq!(parts(&late), [(Part::Shadows(0), None, true), (Part::Shadows(1), None, true)]);
-    assert_eq!(targets.read_hdr(&GPU).unwrap(), fresh(&unshadowed).0);
-    assert!(renderer.settle(&frame, &Fallbacks::default()).unwrap().is_empty());
-    assert_eq!(
-        renderer
-            .render_now(&frame, &Fallbacks::default())
-            .unwrap()
-            .0
-            .read_hdr(&GPU)
-            .unwrap(),
-        fresh(&frame).0
-    );
+    assert!(fresh(&unshadowed).0 != fresh(&frame).0, "the shadows are seen");
+    for linked in [false, true] {
+        let mut renderer = renderer();
+        renderer.prepare(&unshadowed).unwrap();
+        if linked {
+            // The program of the casters is there, their pipeline is not.
+            renderer.needs(&frame).unwrap();
+        }
+        let (targets, late) = renderer.render_now(&frame, &Fallbacks::default()).unwrap();
+        assert_eq!(parts(&late), [(Part::Shadows(0), None, true), (Part::Shadows(1), None, true)]);
+        assert_eq!(targets.read_hdr(&GPU).unwrap(), fresh(&unshadowed).0);
+        assert!(renderer.settle(&frame, &Fallbacks::default()).unwrap().is_empty());
+        let targets = renderer.render_now(&frame, &Fallbacks::default()).unwrap().0;
+        assert_eq!(targets.read_hdr(&GPU).unwrap(), fresh(&frame).0);
+    }
 }
 
 /// Catches an error that is swallowed, that spoils the frame, or that is tried again and again.

@@ -32,6 +32,25 @@ const DISPLAY_PASS: &str = "
         return Color(vec4f(textureLoad(hdr, vec2u(in.at.xy), 0).rgb / 20.0, 1.0));
     }";
 
+const COUNT_RON: &str = r#"(
+    summary: "tested",
+    resources: {"total": (kind: Buffer(bytes: 4), doc: "tested")},
+    passes: {"add": Compute(entry: "add", over: Once)},
+)"#;
+
+/// Shows how often its compute pass ran, in 255ths.
+const COUNT: &str = "
+    struct In { @builtin(vertex_index) i: u32 }
+    struct At { @builtin(position) at: vec4f }
+    struct Color { @location(0) color: vec4f }
+    struct Total { frames: u32 }
+    var<storage, read_write> total: Total;
+    @compute @workgroup_size(1) fn add() { total.frames += 1u; }
+    @vertex fn vertex_main(in: In) -> At {
+        return At(vec4f(f32(in.i & 1u) * 4.0 - 1.0, f32(in.i >> 1u) * 4.0 - 1.0, 0.0, 1.0));
+    }
+    @fragment fn fragment_main() -> Color { return Color(vec4f(f32(total.frames) / 255.0)); }";
+
 fn renderer(gpu: &Gpu) -> Renderer {
     let textured = FORWARD
         .replace("position: vec3f }", "position: vec3f, @location(3) uv: vec2f }")
@@ -44,6 +63,8 @@ fn renderer(gpu: &Gpu) -> Renderer {
         ("pass/flat/flat.wgsl", FORWARD),
         ("pass/show/module.ron", "(summary: \"tested\", uses: [\"post\"])"),
         ("pass/show/show.wgsl", DISPLAY_PASS),
+        ("pass/count/module.ron", COUNT_RON),
+        ("pass/count/count.wgsl", COUNT),
         ("pass/wrong/module.ron", "(summary: \"tested\")"),
         ("pass/wrong/wrong.wgsl", &wrong),
         ("pass/textured/module.ron", "(summary: \"tested\")"),
@@ -211,6 +232,35 @@ fn lost_device_is_an_error_and_a_new_one_draws_the_same() {
         assert!(matches!(result, Err(RuntimeError::Gpu(GpuError::Lost(_)))), "{result:?}");
     }
     assert_eq!(draw_on(&Gpu::headless().unwrap()).unwrap(), before);
+}
+
+/// Catches a preparation that leaves a trace in what modules keep from frame to frame, and buffers that are not kept.
+#[test]
+fn a_preparation_does_not_count_as_a_frame() {
+    let mut frame = frame(vec![]);
+    frame.display = Some(material("count"));
+    let mut renderer = renderer(&gpu());
+    let next = |renderer: &mut Renderer| renderer.render(&frame).unwrap().read_display(&gpu()).unwrap().unwrap()[0];
+    renderer.prepare(&frame).unwrap();
+    assert_eq!(next(&mut renderer), 1);
+    renderer.prepare(&frame).unwrap();
+    assert_eq!(next(&mut renderer), 2);
+}
+
+/// Catches a fallback that is compiled while the special is, and takes its time.
+#[test]
+fn a_fallback_is_made_only_where_nothing_better_comes() {
+    let mut renderer = renderer(&gpu());
+    let mut frame = frame(vec![draw(&square(), at(0.0, 0.0, -1.0))]);
+    frame.display = None;
+    let fallbacks = Fallbacks {
+        otherwise: vec![Fallback::Material(material("show")), Fallback::Material(material("count"))],
+        ..Fallbacks::default()
+    };
+    assert!(renderer.settle(&frame, &fallbacks).unwrap().is_empty());
+    let there = |name| renderer.programs.find(&Node::new(name), "main").is_some();
+    assert!(there("flat") && !there("show") && !there("count"));
+    assert_eq!(renderer.pipeline_counts().misses, 1);
 }
 
 /// Jobs that run until what is returned is dropped: as many as there can be threads.
