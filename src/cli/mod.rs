@@ -7,6 +7,7 @@ pub mod failure;
 mod graph;
 mod input;
 mod list;
+mod needs;
 mod new;
 mod output;
 mod probe;
@@ -81,7 +82,7 @@ pub struct Context {
     /// Standard library, with the folders of `--modules` over it.
     pub library: Arc<dyn compiler::Library>,
     /// Its manifests.
-    pub catalog: compiler::Catalog,
+    pub catalog: Arc<compiler::Catalog>,
     /// How to write.
     pub format: Format,
 }
@@ -102,7 +103,7 @@ impl Context {
         }
         layers.push(modules::library());
         let library: Arc<dyn compiler::Library> = Arc::new(Overlay(layers));
-        let catalog = compiler::Catalog::load(Arc::clone(&library))?;
+        let catalog = Arc::new(compiler::Catalog::load(Arc::clone(&library))?);
         Ok(Self { library, catalog, format })
     }
 }
