@@ -59,7 +59,7 @@ fn bindings(catalog: &Catalog, plan: &Plan, validated: &Validated) -> Vec<Bindin
     let Ok(layouts) = Layouts::new(module) else { return Vec::new() };
     let mut by_place = HashMap::new();
     for block in &plan.blocks {
-        by_place.insert((block.group, block.binding), Fill::Params);
+        by_place.insert((block.group, block.binding), (Fill::Params, String::new()));
     }
     for global in &plan.globals {
         let Some(place) = global.binding else { continue };
@@ -67,14 +67,18 @@ fn bindings(catalog: &Catalog, plan: &Plan, validated: &Validated) -> Vec<Bindin
         let name = unit.ir.global_variables[global.handle].name.clone().unwrap_or_default();
         let instance = plan.homes[global.home].instance.map(|i| plan.instances.list[i].name.clone());
         let fill = match (&instance, declared(catalog, plan, global.home, &name)) {
-            (Some(instance), _) if is_instances(unit, global.handle) => Fill::Instances {
-                instance: instance.clone(),
-            },
-            (_, Some(resource)) => Fill::Resource {
-                instance,
-                resource: name,
-                declared: resource.kind.clone(),
-            },
+            (Some(instance), _) if is_instances(unit, global.handle) => {
+                let instance = instance.clone();
+                (Fill::Instances { instance }, String::new())
+            }
+            (_, Some(resource)) => {
+                let fill = Fill::Resource {
+                    instance,
+                    resource: name,
+                    declared: resource.kind.clone(),
+                };
+                (fill, resource.doc.clone())
+            }
             (_, None) => continue,
         };
         by_place.insert(place, fill);
@@ -84,13 +88,15 @@ fn bindings(catalog: &Catalog, plan: &Plan, validated: &Validated) -> Vec<Bindin
         .iter()
         .filter_map(|(handle, global)| {
             let place = global.binding.as_ref()?;
+            let (fill, doc) = by_place.get(&(place.group, place.binding))?.clone();
             Some(Binding {
                 group: place.group,
                 binding: place.binding,
                 name: global.name.clone().unwrap_or_default(),
                 stages: stages_using(module, info, handle),
                 ty: binding_type(module, info, &layouts, handle)?,
-                fill: by_place.get(&(place.group, place.binding))?.clone(),
+                fill,
+                doc,
             })
         })
         .collect();
