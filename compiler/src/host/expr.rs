@@ -17,7 +17,7 @@ pub enum Expr {
 
 /// Widest body of a struct in one line.
 const STRUCT_WIDTH: usize = 18;
-/// Widest contents of an array or of a call in one line.
+/// Widest contents of an array in one line.
 const LIST_WIDTH: usize = 60;
 
 impl Expr {
@@ -48,8 +48,7 @@ impl Expr {
                 (body.len() <= LIST_WIDTH).then(|| format!("[{body}]"))
             }
             Self::Around(before, inner, after) => {
-                let inner = inner.flat()?;
-                (inner.len() <= LIST_WIDTH || !before.ends_with('(')).then(|| format!("{before}{inner}{after}"))
+                Some(format!("{before}{}{after}", inner.flat()?))
             }
         }
     }
@@ -87,7 +86,8 @@ impl Expr {
                 if before.ends_with('(')
                     && let Self::Atom(text) = value.as_ref()
                 {
-                    return format!("{before}\n{inner}{text}\n{outer}{end}");
+                    let comma = if before.ends_with("!(") { "" } else { "," };
+                    return format!("{before}\n{inner}{text}{comma}\n{outer}{end}");
                 }
                 format!("{before}{}{end}", value.lines(indent, used + before.len(), after + end.len()))
             }

@@ -86,7 +86,8 @@ fn module(text: &mut Text, pass: &Pass) -> Result<(), Report> {
     let names = Names::new(reflection);
     head(text, reflection);
     // A host need not use everything, and the authors' names stay as they are.
-    text.line("#[allow(dead_code, non_snake_case, non_camel_case_types, non_upper_case_globals)]");
+    text.line("#[allow(dead_code, non_snake_case)]");
+    text.line("#[allow(non_camel_case_types, non_upper_case_globals)]");
     text.open(&format!("pub mod {} {{", pass.module));
     text.doc("Hash of the canonical form: equal for shaders that mean the same.");
     text.line(&format!("pub const HASH: u128 = 0x{};", reflection.hash));
