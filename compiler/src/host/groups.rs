@@ -319,7 +319,10 @@ fn storage_format(name: &str) -> Option<String> {
         "rgba16unorm",
         "rgba16snorm",
     ];
-    known.contains(&name).then(|| name[..1].to_uppercase() + &name[1..])
+    let kinds = ["unorm", "snorm", "uint", "sint", "ufloat", "float"];
+    let kind = kinds.into_iter().find(|kind| name.ends_with(kind)).filter(|_| known.contains(&name))?;
+    let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
+    Some(capital(name.strip_suffix(kind)?) + &capital(kind))
 }
 
 /// Writes what a module says of a resource that the host makes: samplers, and sizes of buffers.
