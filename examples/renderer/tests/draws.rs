@@ -132,7 +132,7 @@ mod layouts {
             [number(e), number(e)],
         ];
         let list = [padded(three(e)), padded(three(e))];
-        let mut inner = |e: &mut Vec<f32>| corners::Inner {
+        let mut inner = |e: &mut Vec<f32>| corners::CornersInner {
             a: number(e),
             b: three(e),
             c: number(e),
@@ -145,7 +145,7 @@ mod layouts {
         e.extend([1.0, 2.0, 3.0, 4.0, 5.0, 0.25, 0.5, 0.75, 1e20, 4000.0, -7.0]);
         e.extend([2.5, 3.0, -2.0, 0.0, 41.0, 9.0]);
 
-        let state = corners::Layout_ {
+        let state = corners::CornersLayout {
             pad_4,
             r#in,
             Upper: 77,
@@ -159,13 +159,13 @@ mod layouts {
             signed: [-5, 6],
             ..Default::default()
         };
-        let counter = corners::Counter {
+        let counter = corners::CornersCounter {
             count: 41,
             runs: [7, 8, 9],
         };
         let constants = corners::Constants {
-            gain: 2.5,
-            mirrored: false,
+            corners_gain: 2.5,
+            corners_mirrored: false,
             ..Default::default()
         };
         let found = run(&gpu, &state.bytes(&tail), &threes, &counter, &constants, expected.len());
@@ -176,7 +176,7 @@ mod layouts {
         gpu: &Gpu,
         state: &[u8],
         threes: &[[f32; 4]],
-        counter: &corners::Counter,
+        counter: &corners::CornersCounter,
         constants: &corners::Constants,
         count: usize,
     ) -> Vec<f32> {
