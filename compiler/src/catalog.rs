@@ -244,8 +244,7 @@ impl Catalog {
             }
         }
         contracts::named_functions(&interface, &used)?;
-        lock(&self.interfaces).insert(name.to_owned(), Arc::clone(&interface));
-        Ok(interface)
+        Ok(first(&self.interfaces, name.to_owned(), interface))
     }
 
     fn read_interface(&self, name: &str) -> Result<Interface, Report> {
@@ -295,8 +294,7 @@ impl Catalog {
         )?;
         contracts::interface_unit(&interface.category, &unit)?;
         let unit = Arc::new(unit);
-        lock(&self.interface_units).insert(name.to_owned(), Arc::clone(&unit));
-        Ok(unit)
+        Ok(first(&self.interface_units, name.to_owned(), unit))
     }
 
     /// A module, parsed with these constants.
@@ -320,8 +318,7 @@ impl Catalog {
             }
         };
         let unit = Arc::new(self.parse_module(module, file, constants)?);
-        lock(&self.units).insert(key, Arc::clone(&unit));
-        Ok(unit)
+        Ok(first(&self.units, key, unit))
     }
 
     /// Parses a module's text.
@@ -499,6 +496,11 @@ fn read(library: &dyn Library, path: &str) -> Result<Option<String>, Report> {
     library
         .read(path)
         .map_err(|why| Diagnostic::new(codes::UNREADABLE_FILE, format!("`{path}` cannot be read: {why}")).into())
+}
+
+/// Keeps what was made, unless another thread was faster: whoever asks gets the one that was there first, since linking goes by identity.
+fn first<K: Eq + std::hash::Hash, V>(kept: &Mutex<HashMap<K, Arc<V>>>, key: K, made: Arc<V>) -> Arc<V> {
+    Arc::clone(lock(kept).entry(key).or_insert(made))
 }
 
 /// A panic while the lock was held can only have left a cache entry out: the maps are never half changed.
