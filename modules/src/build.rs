@@ -132,15 +132,25 @@ impl Build {
             let text = fs::read_to_string(path).map_err(|error| file(path, error))?;
             read.insert(fs::canonicalize(path).map_err(|error| file(path, error))?);
             let recipe = Recipe::parse(&path.display().to_string(), &text)?;
-            let stem = path.file_name().and_then(|name| name.to_str()).and_then(|name| name.split('.').next());
+            let stem = path
+                .file_name()
+                .and_then(|name| name.to_str())
+                .and_then(|name| name.split('.').next());
             let stem = stem.unwrap_or(&recipe.root.module).to_owned();
             let target = out.join(format!("{}.rs", module_name(&stem, "main")));
             if texts.iter().any(|(other, _)| *other == target) {
                 return Err(BuildError::Twice(target.display().to_string()));
             }
             let programs: Vec<_> = catalog.compile_all(&recipe)?;
-            let names: Vec<String> = programs.iter().map(|program| module_name(&stem, &program.reflection().pass)).collect();
-            let passes: Vec<Pass> = names.iter().zip(&programs).map(|(name, program)| Pass::new(name, program)).collect();
+            let names: Vec<String> = programs
+                .iter()
+                .map(|program| module_name(&stem, &program.reflection().pass))
+                .collect();
+            let passes: Vec<Pass> = names
+                .iter()
+                .zip(&programs)
+                .map(|(name, program)| Pass::new(name, program))
+                .collect();
             texts.push((target, rust(&passes)?));
         }
         for (target, text) in &texts {

@@ -47,9 +47,7 @@ impl Expr {
                 let body = flat_list(items.iter().map(Self::flat))?;
                 (body.len() <= LIST_WIDTH).then(|| format!("[{body}]"))
             }
-            Self::Around(before, inner, after) => {
-                Some(format!("{before}{}{after}", inner.flat()?))
-            }
+            Self::Around(before, inner, after) => Some(format!("{before}{}{after}", inner.flat()?)),
         }
     }
 

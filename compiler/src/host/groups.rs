@@ -38,7 +38,7 @@ fn write_group(text: &mut Text, pass: &Pass, names: &Names, group: u32, bindings
     text.open(&format!("pub struct {name}<'a> {{"));
     for binding in bindings {
         text.doc(&describe(pass, names, binding)?);
-        text.line(&format!("pub {}: {},", rust(&binding.name), handle(&binding.ty)));
+        text.field(&rust(&binding.name), handle(&binding.ty));
     }
     text.close("}");
     text.blank();
@@ -320,7 +320,10 @@ fn storage_format(name: &str) -> Option<String> {
         "rgba16snorm",
     ];
     let kinds = ["unorm", "snorm", "uint", "sint", "ufloat", "float"];
-    let kind = kinds.into_iter().find(|kind| name.ends_with(kind)).filter(|_| known.contains(&name))?;
+    let kind = kinds
+        .into_iter()
+        .find(|kind| name.ends_with(kind))
+        .filter(|_| known.contains(&name))?;
     let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
     Some(capital(name.strip_suffix(kind)?) + &capital(kind))
 }

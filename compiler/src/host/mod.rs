@@ -8,7 +8,7 @@
 //! - layouts, a struct with a field for each resource of a bind group, the pipeline's layout and its constructors;
 //! - the shader's text, its hash, and its entry points.
 //!
-//! The text is laid out as `rustfmt` would, equal input gives equal bytes, and it compiles without a warning under
+//! The text is laid out as `rustfmt` would, but for names of more than 40 letters; equal input gives equal bytes, and it compiles without a warning under
 //! `#![deny(warnings, missing_docs)]`. `spec/integration.md` says what stands where.
 
 mod docs;
@@ -94,7 +94,9 @@ fn module(text: &mut Text, pass: &Pass) -> Result<(), Report> {
     for entry in &reflection.entry_points {
         text.blank();
         text.doc(&format!("Name of a {} entry point.", names::stage(entry.stage)));
-        text.line(&format!("pub const {}: &str = {:?};", names.entry(&entry.name), entry.name));
+        let one = format!("pub const {}: &str = {:?};", names.entry(&entry.name), entry.name);
+        let broken = one.replacen(" = ", " =\n    ", 1);
+        text.line(if text.indent() + one.len() <= text::WIDTH { &one } else { &broken });
         if let Some([x, y, z]) = entry.workgroup_size {
             text.blank();
             text.doc(&format!("Invocations of a workgroup of `{}` along x, y and z.", entry.name));

@@ -104,7 +104,7 @@ fn constants(text: &mut Text, pass: &Pass, overrides: &[Override]) -> Result<(),
         let param = params.iter().find(|p| p.instance == constant.instance && p.name == constant.param);
         let owner = format!("`{}` of `{}`", constant.param, constant.instance);
         text.doc(&param.map_or_else(|| format!("This is {owner}."), |p| describe_param(&p.declared, &owner)));
-        text.line(&format!("pub {field}: {ty},"));
+        text.field(field, ty);
     }
     text.close("}");
     text.blank();

@@ -228,7 +228,7 @@ fn structure(text: &mut Text, name: &str, doc: &str, fields: &[Field], size: u32
             text.doc(&format!("\n{note}"));
         }
         let rust = rust(&field.name);
-        text.line(&format!("pub {rust}: {},", field.shape.ty));
+        text.field(&rust, &field.shape.ty);
         at = field.offset + field.shape.size;
         let zero = || Expr::atom("bytemuck::Zeroable::zeroed()");
         values.push((rust.clone(), field.default.clone().unwrap_or_else(zero)));
@@ -251,10 +251,10 @@ fn structure(text: &mut Text, name: &str, doc: &str, fields: &[Field], size: u32
     text.close("}");
     text.blank();
     text.open("const _: () = {");
-    let mut check = |what: String| put(text, "", &Expr::call("assert!", Expr::Atom(what)), ";");
-    check(format!("core::mem::size_of::<{name}>() == {size}"));
+    let check = |text: &mut Text, what: String| put(text, "", &Expr::call("assert!", Expr::Atom(what)), ";");
+    check(text, format!("core::mem::size_of::<{name}>() == {size}"));
     for (member, offset) in places {
-        check(format!("core::mem::offset_of!({name}, {member}) == {offset}"));
+        check(text, format!("core::mem::offset_of!({name}, {member}) == {offset}"));
     }
     text.close("};");
 }

@@ -64,6 +64,16 @@ impl Text {
         self.out.push_str(&format!("{before}r{marks}\"{text}\"{marks}{after}\n"));
     }
 
+    /// A public field of a struct.
+    pub fn field(&mut self, name: &str, ty: &str) {
+        let one = format!("pub {name}: {ty},");
+        if self.indent() + one.len() <= WIDTH {
+            self.line(&one);
+        } else {
+            self.line(&format!("pub {name}:\n    {ty},"));
+        }
+    }
+
     /// A function's head, with its arguments in one line or one a line.
     pub fn function(&mut self, name: &str, arguments: &[&str], result: &str) {
         let one = format!("pub fn {name}({}) -> {result} {{", arguments.join(", "));

@@ -161,7 +161,10 @@ impl Gpu {
         let stride = (size.width * PIXEL).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let staging = self.checked(|device| {
             let mut commands = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            let (color, depth) = (target.color.create_view(&Default::default()), target.depth.create_view(&Default::default()));
+            let (color, depth) = (
+                target.color.create_view(&Default::default()),
+                target.depth.create_view(&Default::default()),
+            );
             let mut pass = commands.begin_render_pass(&wgpu::RenderPassDescriptor {
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                     view: &color,

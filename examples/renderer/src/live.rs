@@ -188,7 +188,15 @@ fn contents(reflection: &Reflection, binding: &Binding, world: &World) -> Result
     match &binding.fill {
         Fill::Params => {
             for param in &reflection.params {
-                let ParamPlace::Uniform { group, binding: at, offset, .. } = param.place else { continue };
+                let ParamPlace::Uniform {
+                    group,
+                    binding: at,
+                    offset,
+                    ..
+                } = param.place
+                else {
+                    continue;
+                };
                 if (group, at) != (binding.group, binding.binding) {
                     continue;
                 }

@@ -60,7 +60,12 @@ impl World {
             finish,
             base_color: [0.7, 0.35, 0.15],
             roughness: 0.3,
-            model: [[1.0, 0.0, 0.0, 0.0], [0.0, cos, sin, 0.0], [0.0, -sin, cos, 0.0], [0.0, 0.0, 0.0, 1.0]],
+            model: [
+                [1.0, 0.0, 0.0, 0.0],
+                [0.0, cos, sin, 0.0],
+                [0.0, -sin, cos, 0.0],
+                [0.0, 0.0, 0.0, 1.0],
+            ],
             view_projection: view_projection(eye, 50_f32.to_radians()),
             eye,
             forward: [0.0, 0.0, -1.0],
