@@ -1,4 +1,5 @@
 //! What a host may key a cache of its own by: the canonical hash of a program, and a recipe's key before anything is compiled.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod common;
 

@@ -1,4 +1,5 @@
 //! Rust for a user's own renderer. That it compiles and draws is shown in `examples/renderer`; here is what it looks like.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod common;
 
@@ -46,6 +47,9 @@ fn odd(long: &str) -> Program {
             many: array<vec3f, 3>,
         }}
         struct Tail {{ n: u32, rest: array<mat3x2f> }}
+        /// Nothing but its tail.
+        struct Only {{ points: array<vec3f> }}
+        var<storage, read_write> only: Only;
         var<storage, read> {long}: Layout;
         var<storage, read_write> tail: Tail;
         var<storage, read_write> numbers: array<atomic<i32>>;
@@ -68,6 +72,7 @@ fn odd(long: &str) -> Program {
         }}
         @compute @workgroup_size(8, 8) fn c() {{
             atomicAdd(&numbers[0], i32(tail.n) + i32(params.gain));
+            only.points[0].x = 1.0;
             tail.rest[0] *= params.size.x;
             textureStore(out, vec2i(0), textureLoad(out, vec2i(0)) + select(0u, 1u, params.on));
         }}"##
@@ -78,7 +83,7 @@ fn odd(long: &str) -> Program {
             "on": (type: Bool, default: true, mode: Override),
             "size": (type: Vec2, default: (1.0, 0.5), doc: "Of it"),
         }}, resources: {{
-            "{long}": (kind: Host("a")), "tail": (kind: Host("b")), "numbers": (kind: Buffer(bytes: 64)), "cubes": (kind: Host("c")),
+            "{long}": (kind: Host("a")), "tail": (kind: Host("b")), "only": (kind: Host("o")), "numbers": (kind: Buffer(bytes: 64)), "cubes": (kind: Host("c")),
             "ids": (kind: Host("d")), "volume": (kind: Host("e"), group: 1), "out": (kind: Host("f"), doc: "Ids"),
             "compare": (kind: Sampler(compare: true, linear: true)), "near": (kind: Sampler()),
         }}"#
@@ -148,6 +153,9 @@ fn names_and_comments_that_are_trouble() {
         "pub r#in: [f32; 3],",
         r"/// In \[brackets\], \<b\>bold\</b\>, and `as[it]<is>`.",
         "= r##\"",
+        "storage buffer: any number of `[f32; 4]`, at least one. The fourth number of each element is padding.\n        pub odd_only: ",
+        "storage buffer: what [`bytes`](OddTail::bytes) makes.",
+        "the elements of `rest` behind it. By columns.",
         "/// Of \\[all\\].\n        ///\n        /// This is `gain` of `odd`, in lx, from -1e-9 to 2.5.\n        pub odd_gain: f32,",
     ] {
         assert!(text.contains(part), "no `{part}` in\n{text}");
@@ -223,6 +231,17 @@ error[SW0601]: Rust for wgpu 30 has no place for `b: f64` in a buffer, which the
     );
     let (one, other) = (Pass::new("same", &two), Pass::new("same", &wide));
     assert!(rust(&[one, other]).is_err());
+    let half = pass(
+        r#"resources: {"x": (kind: Host("x"))}, capabilities: ["SHADER_FLOAT16"]"#,
+        "enable f16;\nstruct X { a: f32, b: f16, c: array<f16> }
+        var<storage, read_write> x: X;\n@compute @workgroup_size(1) fn c() { x.b = x.c[1]; }",
+    );
+    assert_text(
+        &error(&half),
+        "
+error[SW0601]: Rust for wgpu 30 has no place for a fixed part of 6 bytes in `P_X`, which the pass `main` has
+",
+    );
     let small = Texts::default()
         .category("pass", "", "")
         .module("pass", "e", "", "@compute @workgroup_size(1) fn c() {}")

@@ -1,4 +1,5 @@
 //! The helper for build scripts.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 use std::fs;
 use std::path::Path;

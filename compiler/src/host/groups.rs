@@ -3,7 +3,7 @@
 use super::docs::escape;
 use super::expr::{Expr, constant};
 use super::names::{Names, rust};
-use super::structs::shape;
+use super::structs::{shape, unwrapped};
 use super::text::Text;
 use super::{Pass, unsupported};
 use crate::diagnostics::Report;
@@ -101,6 +101,7 @@ fn handle(ty: &BindingType) -> &'static str {
 /// What a field holds, for people.
 fn describe(pass: &Pass, names: &Names, binding: &Binding) -> Result<String, Report> {
     let contents = |layout: &Layout| -> Result<String, Report> {
+        let layout = unwrapped(layout);
         let shape = shape(layout, names);
         let shape = shape.ok_or_else(|| unsupported(pass, &format!("`{}: {}` in a buffer", binding.name, layout.ty)))?;
         // Only structs of this module are links.

@@ -17,8 +17,6 @@ mod groups;
 mod names;
 mod pipelines;
 mod structs;
-#[cfg(test)]
-mod tests;
 mod text;
 
 pub use names::module_name;

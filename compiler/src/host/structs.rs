@@ -27,8 +27,17 @@ const COLUMNS: &str = "By columns.";
 const THREES: &str = "The fourth number of each element is padding.";
 const HALF: &str = "Bits of 16-bit floats.";
 
+/// What a struct is that has nothing but a runtime-sized array; any other layout as it is.
+pub fn unwrapped(layout: &Layout) -> &Layout {
+    match &layout.members[..] {
+        [only] if only.layout.element.is_some() && only.layout.count.is_none() => &only.layout,
+        _ => layout,
+    }
+}
+
 /// The type of a value in a buffer; of a runtime-sized array that of its element. `None` for what Rust has no type for.
 pub fn shape(layout: &Layout, names: &Names) -> Option<Shape> {
+    let layout = unwrapped(layout);
     if !layout.members.is_empty() {
         return Some(Shape {
             ty: names.of_struct(&layout.ty),
@@ -138,6 +147,7 @@ fn buffer(
     declared: &HashMap<&str, Declared>,
     written: &mut HashSet<String>,
 ) -> Result<(), Report> {
+    let layout = unwrapped(layout);
     if let Some(element) = &layout.element {
         buffer(text, pass, names, docs, element, declared, written)?;
     }
@@ -180,12 +190,10 @@ fn buffer(
         doc => doc.to_owned(),
     };
     let name = names.of_struct(&layout.ty);
-    let whole = fields.iter().all(|f| f.shape.size % 2 == 0) && (layout.size % 4 == 0 || fields.iter().all(|f| f.shape.ty.contains("u16")));
-    if !whole {
-        return Err(unsupported(
-            pass,
-            &format!("a fixed part of {} bytes in `{}`", layout.size, layout.ty),
-        ));
+    // Only before a tail can a size be none of a struct's: behind 16-bit numbers.
+    if tail.is_some() && !layout.size.is_multiple_of(4) {
+        let what = format!("a fixed part of {} bytes in `{}`", layout.size, layout.ty);
+        return Err(unsupported(pass, &what));
     }
     structure(text, &name, &doc, &fields, layout.size);
     if let Some((member, element)) = tail {
@@ -263,7 +271,10 @@ fn structure(text: &mut Text, name: &str, doc: &str, fields: &[Field], size: u32
 fn with_tail(text: &mut Text, name: &str, member: &str, element: &Shape, layout: &Layout) {
     text.blank();
     text.open(&format!("impl {name} {{"));
-    text.doc(&format!("Contents of a buffer: this, and the elements of `{member}` behind it."));
+    let note = element.note.map(|note| format!(" {note}")).unwrap_or_default();
+    text.doc(&format!(
+        "Contents of a buffer: this, and the elements of `{member}` behind it.{note}"
+    ));
     text.doc("\nNever shorter than a binding may be: without elements the shader sees one of zeros.");
     text.function("bytes", &["&self", &format!("{member}: &[{}]", element.ty)], "Vec<u8>");
     text.line("let mut bytes = bytemuck::bytes_of(self).to_vec();");

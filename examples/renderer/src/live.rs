@@ -221,7 +221,10 @@ fn contents(reflection: &Reflection, binding: &Binding, world: &World) -> Result
                 }
             }
         }
-        Fill::Resource { declared, .. } if matches!(declared, ResourceKind::Host(_)) => fill_host(&mut bytes, layout, world),
+        Fill::Resource {
+            declared: ResourceKind::Host(_),
+            ..
+        } => fill_host(&mut bytes, layout, world),
         Fill::Resource { resource, .. } => return Err(Error::Shader(format!("this renderer has no `{resource}`"))),
     }
     Ok((usage, bytes))

@@ -7,4 +7,12 @@ macro_rules! shaders {
 
 shaders!("matte", "glossy");
 // The renderer does without these; its tests run them.
-shaders!("auto_exposure", "corners", "depth", "display", "forward", "unshadowed");
+shaders!(
+    "auto_exposure",
+    "corners",
+    "depth",
+    "display",
+    "double_sided",
+    "forward",
+    "unshadowed"
+);

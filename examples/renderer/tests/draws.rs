@@ -1,4 +1,5 @@
 //! What the generated Rust draws and reads, against closed forms.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
 
 use std::f32::consts::PI;
 
