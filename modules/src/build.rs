@@ -8,7 +8,7 @@
 //!     .write();
 //! ```
 //!
-//! ```ignore
+//! ```text
 //! // src/main.rs
 //! include!(concat!(env!("OUT_DIR"), "/matte.rs"));
 //! ```
