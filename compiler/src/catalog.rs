@@ -196,6 +196,11 @@ impl Catalog {
         Diagnostic::new(codes::UNKNOWN_MODULE, format!("there is no module `{name}`")).suggest(name, "modules", known)
     }
 
+    /// Text of a file of the library; `None` where there is none.
+    pub(crate) fn text(&self, path: &str) -> Result<Option<String>, Report> {
+        read(self.library.as_ref(), path)
+    }
+
     /// A category's interface, scanned.
     pub(crate) fn interface(&self, name: &str) -> Result<Arc<Interface>, Report> {
         if let Some(done) = lock(&self.interfaces).get(name) {

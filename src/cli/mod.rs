@@ -1,5 +1,6 @@
 //! What can be typed, and which file does it.
 
+mod bindings;
 mod check;
 mod diff;
 mod emit;
@@ -63,6 +64,8 @@ enum Command {
     Check(check::Options),
     /// Writes the shader of a recipe, and its binding layout
     Emit(emit::Options),
+    /// Writes Rust for a renderer of one's own: structs, bind groups, pipelines
+    Bindings(bindings::Options),
     /// Shows the tree of a recipe, defaults written out
     Graph(graph::Options),
     /// Says why a function, binding, parameter or struct is in the shader
@@ -121,6 +124,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::List(options) => list::run(&context(&arguments.modules)?, &options),
         Command::Show(options) => show::run(&context(&arguments.modules)?, &options),
         Command::Emit(options) => emit::run(&context(&arguments.modules)?, &options),
+        Command::Bindings(options) => bindings::run(&context(&arguments.modules)?, &options),
         Command::Graph(options) => graph::run(&context(&arguments.modules)?, &options),
         Command::Why(options) => why::run(&context(&arguments.modules)?, &options),
         Command::Diff(options) => diff::run(&context(&arguments.modules)?, &options),
