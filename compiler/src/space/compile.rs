@@ -39,18 +39,13 @@ pub type Compiled = Vec<(String, Result<Program, Report>)>;
 
 /// Compiles permutations and makes something small of each, in their order whatever the threads do. A permutation that fails is
 /// a result like others. `None` where the work was cancelled before.
-///
-/// # Errors
-/// No threads can be started.
+/// Where no threads can be started it is done on this one.
 pub fn compile_all<T: Send>(
     catalog: &Catalog,
     permutations: &[Permutation],
     work: &Work,
     finish: impl Fn(&Permutation, Compiled) -> T + Sync,
-) -> Result<Vec<Option<T>>, Report> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(work.threads).build().map_err(|error| {
-        Report::from(Diagnostic::new(codes::UNREADABLE_FILE, format!("no threads can be started: {error}")))
-    })?;
+) -> Vec<Option<T>> {
     let done = AtomicUsize::new(0);
     let one = |permutation: &Permutation| {
         if work.cancel.load(Ordering::Relaxed) {
@@ -60,7 +55,10 @@ pub fn compile_all<T: Send>(
         (work.progress)(done.fetch_add(1, Ordering::Relaxed) + 1);
         Some(result)
     };
-    Ok(pool.install(|| permutations.par_iter().map(one).collect()))
+    match rayon::ThreadPoolBuilder::new().num_threads(work.threads).build() {
+        Ok(pool) => pool.install(|| permutations.par_iter().map(one).collect()),
+        Err(_) => permutations.iter().map(one).collect(),
+    }
 }
 
 fn compile(catalog: &Catalog, recipe: &Recipe, passes: &Passes) -> Compiled {
@@ -94,19 +92,22 @@ fn compile(catalog: &Catalog, recipe: &Recipe, passes: &Passes) -> Compiled {
 pub fn fingerprint(library: &dyn Library) -> Result<u128, Report> {
     let mut hasher = SipHasher13::new();
     let mut write = |text: &str| {
-        hasher.write_usize(text.len());
+        hasher.write_u64(text.len() as u64);
         hasher.write(text.as_bytes());
     };
     write(env!("CARGO_PKG_VERSION"));
     for category in sorted(library.folders("")) {
         let mut paths = vec![format!("{category}/category.ron"), format!("{category}/interface.wgsl")];
         for module in sorted(library.folders(&category)) {
-            paths.extend([format!("{category}/{module}/module.ron"), format!("{category}/{module}/{module}.wgsl")]);
+            paths.extend([
+                format!("{category}/{module}/module.ron"),
+                format!("{category}/{module}/{module}.wgsl"),
+            ]);
         }
         for path in paths {
-            let text = library.read(&path).map_err(|why| {
-                Report::from(Diagnostic::new(codes::UNREADABLE_FILE, format!("`{path}` cannot be read: {why}")))
-            })?;
+            let text = library
+                .read(&path)
+                .map_err(|why| Report::from(Diagnostic::new(codes::UNREADABLE_FILE, format!("`{path}` cannot be read: {why}"))))?;
             if let Some(text) = text {
                 write(&path);
                 write(&text);

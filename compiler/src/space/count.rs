@@ -224,7 +224,15 @@ pub fn unrank(tree: &Tree, signatures: &Signatures, ways: &[Ways], fixed: &Fixed
     }
 }
 
-fn unrank_row(tree: &Tree, signatures: &Signatures, ways: &[Ways], fixed: &Fixed, (id, mut key): (ExprId, Key), mut index: u128, picks: &mut Picks) {
+fn unrank_row(
+    tree: &Tree,
+    signatures: &Signatures,
+    ways: &[Ways],
+    fixed: &Fixed,
+    (id, mut key): (ExprId, Key),
+    mut index: u128,
+    picks: &mut Picks,
+) {
     let expr = &tree.exprs[id];
     'elements: for (position, element) in expr.row().into_iter().enumerate().rev() {
         for way in row_ways(expr, ways, (id, position, element), key, fixed, &mut Met(signatures)) {
@@ -256,7 +264,14 @@ struct RowWay {
     count: u128,
 }
 
-fn row_ways(expr: &Expr, ways: &[Ways], (id, position, element): (ExprId, usize, ExprId), key: Key, fixed: &Fixed, rules: &mut dyn Rules) -> Vec<RowWay> {
+fn row_ways(
+    expr: &Expr,
+    ways: &[Ways],
+    (id, position, element): (ExprId, usize, ExprId),
+    key: Key,
+    fixed: &Fixed,
+    rules: &mut dyn Rules,
+) -> Vec<RowWay> {
     let mut found = Vec::new();
     for &(before, count) in &ways[id].beginnings[position] {
         if before == key && may_be_absent(expr, position, fixed) {

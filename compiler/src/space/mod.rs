@@ -164,7 +164,7 @@ impl Space {
     /// The permutation of a number; `None` from [`Space::count`] on, and where there are too many to number.
     pub fn get(&self, index: u128) -> Option<Permutation> {
         let picks = self.picks(index)?;
-        Some(self.permutation(Some(index), picks))
+        Some(self.permutation(Some(index), &picks))
     }
 
     /// All permutations in the order of their numbers, from a number on: to go on after an interruption, begin there.
@@ -188,7 +188,7 @@ impl Space {
     /// fewest; always the same.
     pub fn pairwise(&self) -> Vec<Permutation> {
         let cover = pairwise::cover(self).into_iter();
-        cover.map(|picks| self.permutation(self.index_of(&picks), picks)).collect()
+        cover.map(|picks| self.permutation(self.index_of(&picks), &picks)).collect()
     }
 
     /// Numbers of so many different permutations, ascending, each set of them as probable as any other. All where there are no more.
@@ -204,7 +204,15 @@ impl Space {
         for &(signature, count) in &self.legal {
             if index < count {
                 let mut picks = vec![UNCHOSEN; self.tree.points.len()];
-                count::unrank(&self.tree, &self.signatures, &self.ways, &self.free, (root, signature), index, &mut picks);
+                count::unrank(
+                    &self.tree,
+                    &self.signatures,
+                    &self.ways,
+                    &self.free,
+                    (root, signature),
+                    index,
+                    &mut picks,
+                );
                 return Some(picks);
             }
             index -= count;
@@ -219,12 +227,11 @@ impl Space {
         Some(before.map(|&(_, count)| count).sum::<u128>() + index)
     }
 
-    fn permutation(&self, index: Option<u128>, picks: Picks) -> Permutation {
+    fn permutation(&self, index: Option<u128>, picks: &Picks) -> Permutation {
         Permutation {
             index,
-            choices: permutation::choices(&self.tree, &picks, &self.possible),
-            recipe: permutation::recipe(&self.tree, &picks),
-            picks,
+            choices: permutation::choices(&self.tree, picks, &self.possible),
+            recipe: permutation::recipe(&self.tree, picks),
         }
     }
 
@@ -260,7 +267,9 @@ fn over_limits(file: &SpaceFile, shared: &amounts::Amounts) -> Report {
     let at = Place::new(&file.source).keys(&["limits"]);
     let limits = file.limits.most().into_iter().zip(shared).zip(amounts::NAMES);
     let over = limits.filter_map(|((limit, &needed), name)| Some((limit?, needed, name)).filter(|&(limit, needed, _)| needed > limit));
-    let text: Vec<String> = over.map(|(limit, needed, name)| format!("{needed} {name}, {limit} allowed")).collect();
+    let text: Vec<String> = over
+        .map(|(limit, needed, name)| format!("{needed} {name}, {limit} allowed"))
+        .collect();
     Diagnostic::new(codes::SPACE_EMPTY, "no permutation of the space is legal")
         .at(&at.file, at.span(), "no tree keeps these limits")
         .note(format!("what every tree shares comes to {}", text.join(", ")))
@@ -288,7 +297,9 @@ fn check_tags(catalog: &Catalog, file: &SpaceFile) -> Result<(), Report> {
             let at = Place::new(&file.source).keys(&["rules"]).then(Way::Index(index)).keys(&[key]);
             return Err(Diagnostic::new(codes::UNKNOWN_TAG, format!("nothing has the tag `{word}`"))
                 .at(&at.file, at.span(), "unknown")
-                .note("a tag is a module's name, its category, a property that it claims, a role of one of its fields, or a tag of the space")
+                .note(
+                    "a tag is a module's name, its category, a property that it claims, a role of one of its fields, or a tag of the space",
+                )
                 .suggest(word, "tags", known)
                 .into());
         }

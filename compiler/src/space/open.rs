@@ -232,7 +232,13 @@ impl Opener<'_> {
         }
     }
 
-    fn some_of(&mut self, found: Vec<(usize, ExprId, String)>, range: (u32, u32), around: &Around, place: &Place) -> Result<Option<ExprId>, Report> {
+    fn some_of(
+        &mut self,
+        found: Vec<(usize, ExprId, String)>,
+        range: (u32, u32),
+        around: &Around,
+        place: &Place,
+    ) -> Result<Option<ExprId>, Report> {
         if (found.len() as u32) < range.0 {
             return Ok(None);
         }
@@ -267,7 +273,11 @@ impl Opener<'_> {
                 );
             }
             (hole, _) => {
-                let label = if hole.is_some() { "the slot says of which category" } else { "of which category?" };
+                let label = if hole.is_some() {
+                    "the slot says of which category"
+                } else {
+                    "of which category?"
+                };
                 return Err(Diagnostic::new(codes::BAD_CHOICE, "`of` is for the root, which stands in no slot")
                     .at(&place.file, place.span(), label)
                     .into());
@@ -281,7 +291,10 @@ impl Opener<'_> {
             Arity::List => bounds(fits.min, fits.max, all.len(), place)?,
         };
         let named = |m: &Module| fits.without.iter().any(|w| *w == m.name || *w == full_name(m));
-        let fitting: Vec<Arc<Module>> = all.into_iter().filter(|m| !named(m) && !around.above.contains(&full_name(m))).collect();
+        let fitting: Vec<Arc<Module>> = all
+            .into_iter()
+            .filter(|m| !named(m) && !around.above.contains(&full_name(m)))
+            .collect();
         let source = Source::Fitting(fits, depth);
         let quiet = Around {
             quiet: true,
@@ -400,7 +413,14 @@ impl Opener<'_> {
         Ok(amounts)
     }
 
-    fn parts(&mut self, module: &Arc<Module>, source: Source, tags: &[String], around: &Around, place: &Place) -> Result<Option<Vec<Part>>, Report> {
+    fn parts(
+        &mut self,
+        module: &Arc<Module>,
+        source: Source,
+        tags: &[String],
+        around: &Around,
+        place: &Place,
+    ) -> Result<Option<Vec<Part>>, Report> {
         let mut parts = Vec::new();
         for (name, param) in &module.manifest.params {
             let written = match source {

@@ -110,7 +110,10 @@ pub fn cover(space: &Space) -> Vec<Picks> {
 /// Options that were chosen, by number.
 fn chosen(space: &Space, picks: &Picks) -> Vec<usize> {
     let points = space.tree.points.iter().zip(picks);
-    points.filter(|&(_, &pick)| pick != UNCHOSEN).map(|(point, &pick)| point.first_value + pick as usize).collect()
+    points
+        .filter(|&(_, &pick)| pick != UNCHOSEN)
+        .map(|(point, &pick)| point.first_value + pick as usize)
+        .collect()
 }
 
 /// Decides the rest, each time for the option with the most pairs that are still to be covered.
@@ -132,7 +135,9 @@ fn complete(space: &Space, mut fixed: Fixed, open: &Pairs) -> Option<Picks> {
             let now = taken.iter().filter(|&&other| open.has(value, other)).count();
             (now, promise[value])
         };
-        let best = candidates.iter().fold(first, |best, &value| if score(value) > score(best) { value } else { best });
+        let best = candidates
+            .iter()
+            .fold(first, |best, &value| if score(value) > score(best) { value } else { best });
         let option = (best - point.first_value) as u32;
         picks[index] = option;
         taken.push(best);

@@ -18,7 +18,6 @@ pub struct Permutation {
     pub choices: Vec<Chosen>,
     /// The recipe.
     pub recipe: Recipe,
-    pub(super) picks: Picks,
 }
 
 /// What was chosen in one place.
@@ -43,7 +42,11 @@ pub fn recipe(tree: &Tree, picks: &Picks) -> Recipe {
 
 /// What these picks chose, of the choices that are choices: those with several `possible` options.
 pub fn choices(tree: &Tree, picks: &Picks, possible: &[bool]) -> Vec<Chosen> {
-    let real: Vec<bool> = tree.points.iter().map(|p| options(possible, p.first_value, p.options.len()) > 1).collect();
+    let real: Vec<bool> = tree
+        .points
+        .iter()
+        .map(|p| options(possible, p.first_value, p.options.len()) > 1)
+        .collect();
     let mut found = Vec::new();
     if let Some(root) = tree.exprs.len().checked_sub(1) {
         describe(tree, root, picks, &real, &mut found);

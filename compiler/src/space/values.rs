@@ -50,7 +50,14 @@ fn numbers(name: &str, range: &ValueRange, place: &Place) -> Result<Vec<f64>, Re
         steps,
         scale,
     } = range;
-    let refuse = |label: &str| Err(wrong(name, place, label, "a range is (from: a, to: b, steps: n) or (from: a, to: b, step: d), a below b"));
+    let refuse = |label: &str| {
+        Err(wrong(
+            name,
+            place,
+            label,
+            "a range is (from: a, to: b, steps: n) or (from: a, to: b, step: d), a below b",
+        ))
+    };
     if !(from.is_finite() && to.is_finite() && from < to) {
         return refuse("`from` must be below `to`");
     }

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::catalog::Module;
 use crate::manifest::{Among, Rule};
 use crate::resolve::rules::has_tag;
-use crate::catalog::Module;
 
 use super::amounts::Amounts;
 use super::format::{Limits, SpaceRule};
@@ -90,7 +90,9 @@ pub fn watch(tree: &mut Tree, rules: &[SpaceRule], limits: &Limits, shared: &Amo
         let has: Vec<u8> = tags.iter().map(|tag| u8::from(tag.is_on(&module.module, &module.tags))).collect();
         let mut own = Own {
             amounts: most.iter().map(|&(thing, _)| module.amounts[thing]).collect(),
-            label: label_of(module).and_then(|label| contested.iter().position(|other| *other == label)).map(|i| i as u32),
+            label: label_of(module)
+                .and_then(|label| contested.iter().position(|other| *other == label))
+                .map(|i| i as u32),
             tags: has.clone(),
             ..Own::default()
         };
