@@ -86,7 +86,7 @@ impl Rules for Met<'_> {
 }
 
 /// Most sums of signatures that one count may take; beyond it rules tie together too much of the tree.
-pub const MOST_SUMS: usize = 1 << 22;
+pub const MOST_SUMS: usize = 1 << 19;
 
 /// Counts. Numbers saturate. `None` where it would take more than [`MOST_SUMS`].
 pub fn ways(tree: &Tree, rules: &mut dyn Rules, fixed: &Fixed) -> Option<Vec<Ways>> {
@@ -176,12 +176,17 @@ fn may_be_there(expr: &Expr, index: usize, fixed: &Fixed) -> bool {
     expr.element_point(index).is_none_or(|point| fixed[point] != Some(0))
 }
 
+/// Whether it matters how many of its elements are there.
+fn bounded(expr: &Expr) -> bool {
+    matches!(expr, Expr::SomeOf { range, of, .. } if range.0 > 0 || (range.1 as usize) < of.len())
+}
+
 /// The next element of a row, there.
 fn step(expr: &Expr, index: usize, (taken, before): Key, signature: SigId, rules: &mut dyn Rules) -> Option<Key> {
     let (signature, one) = match expr {
         Expr::Module(module) if module.own.exact.is_some() => (rules.enclose(index, signature), 0),
-        Expr::SomeOf { range, .. } if taken >= range.1 => return None,
-        Expr::SomeOf { .. } => (signature, 1),
+        Expr::SomeOf { range, .. } if bounded(expr) && taken >= range.1 => return None,
+        Expr::SomeOf { .. } => (signature, u32::from(bounded(expr))),
         _ => (signature, 0),
     };
     Some((taken + one, rules.sum(before, signature)?))
@@ -191,7 +196,7 @@ fn step(expr: &Expr, index: usize, (taken, before): Key, signature: SigId, rules
 fn finished(expr: &Expr, id: ExprId, (taken, signature): Key, rules: &mut dyn Rules) -> Option<SigId> {
     match expr {
         Expr::Module(_) => rules.wrap(id, signature),
-        Expr::SomeOf { range, .. } if !(range.0..=range.1).contains(&taken) => None,
+        Expr::SomeOf { range, .. } if bounded(expr) && !(range.0..=range.1).contains(&taken) => None,
         _ => Some(signature),
     }
 }

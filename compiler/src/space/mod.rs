@@ -231,6 +231,7 @@ impl Space {
         Permutation {
             index,
             choices: permutation::choices(&self.tree, picks, &self.possible),
+            options: permutation::numbers(&self.tree, picks, &self.possible),
             recipe: permutation::recipe(&self.tree, picks),
         }
     }

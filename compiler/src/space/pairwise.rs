@@ -121,6 +121,14 @@ fn complete(space: &Space, mut fixed: Fixed, open: &Pairs) -> Option<Picks> {
     let tree = &space.tree;
     let promise = promise(space, open);
     let mut possible = space.possible_with(&fixed);
+    let mut forced = tree
+        .points
+        .iter()
+        .zip(&fixed)
+        .filter_map(|(point, only)| Some(point.first_value + (*only)? as usize));
+    if forced.any(|value| !possible[value]) {
+        return None;
+    }
     let mut picks: Picks = vec![UNCHOSEN; tree.points.len()];
     let mut taken: Vec<usize> = Vec::new();
     for (index, point) in tree.points.iter().enumerate() {
@@ -146,7 +154,6 @@ fn complete(space: &Space, mut fixed: Fixed, open: &Pairs) -> Option<Picks> {
             possible = space.possible_with(&fixed);
         }
     }
-    possible.iter().any(|p| *p).then_some(()).or((tree.values == 0).then_some(()))?;
     Some(picks)
 }
 

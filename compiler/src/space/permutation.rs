@@ -16,6 +16,9 @@ pub struct Permutation {
     pub index: Option<u128>,
     /// What was chosen, outer choices first. Places without a choice are left out.
     pub choices: Vec<Chosen>,
+    /// The same as numbers: of all options of all choices those that were chosen, ascending. What two permutations have in common, and
+    /// which pairs of options a set of them covers, is read off these.
+    pub options: Vec<usize>,
     /// The recipe.
     pub recipe: Recipe,
 }
@@ -52,6 +55,13 @@ pub fn choices(tree: &Tree, picks: &Picks, possible: &[bool]) -> Vec<Chosen> {
         describe(tree, root, picks, &real, &mut found);
     }
     found
+}
+
+/// The numbers of the options that these picks chose, of the choices that are choices.
+pub fn numbers(tree: &Tree, picks: &Picks, possible: &[bool]) -> Vec<usize> {
+    let chosen = tree.points.iter().zip(picks).filter(|&(_, &pick)| pick != UNCHOSEN);
+    let real = chosen.filter(|(point, _)| options(possible, point.first_value, point.options.len()) > 1);
+    real.map(|(point, &pick)| point.first_value + pick as usize).collect()
 }
 
 fn options(possible: &[bool], first: usize, number: usize) -> usize {
