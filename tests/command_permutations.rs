@@ -13,6 +13,9 @@ use support::{Ran, bad, finish, good, names, run, run_with_input, shadewright};
 /// Eight permutations: two BRDFs, two lights there or not.
 const SPACE: &str =
     r#"(module: "forward", fill: {"brdf": (one_of: ["lambert", "microfacet"]), "lights": (some_of: ["directional", "point"])})"#;
+/// Six permutations, all different.
+const LIT: &str =
+    r#"(module: "forward", fill: {"brdf": (one_of: ["lambert", "microfacet"]), "lights": (some_of: ["directional", "point"], min: 1)})"#;
 /// Six permutations with two programs: a module with a label is the same program.
 const TWINS: &str = r#"(module: "display", fill: {"post": (one_of: [
     [],
@@ -107,11 +110,11 @@ fn checks() {
     assert_eq!(text.text(), "6 permutations, 6 programs, 2 distinct (3.00 to one)\n");
     let folder = broken();
     let modules = folder.path().to_str().unwrap();
-    let space = r#"(module: "forward", fill: {"brdf": (one_of: ["lambert", "broken", "microfacet"])})"#;
+    let space = r#"(module: "forward", fill: {"brdf": (one_of: ["lambert", "broken", "microfacet"]), "lights": ["point"]})"#;
     let ran = run(&["permutations", space, "--check", "--modules", modules]);
     assert_eq!((ran.status, ran.err.as_str()), (1, ""));
     assert!(
-        ran.text().starts_with("1: main.brdf=broken\npass main: error[SW0401]"),
+        ran.text().starts_with("1: main.brdf=broken\npass main: error[SW0402]"),
         "{}",
         ran.text()
     );
@@ -137,13 +140,13 @@ fn checks() {
         (ran.status, &json["programs"], &json["failed"][0]["index"]),
         (1, &2.into(), &"1".into())
     );
-    assert_eq!(json["failed"][0]["diagnostics"][0]["code"], "SW0401");
+    assert_eq!(json["failed"][0]["diagnostics"][0]["code"], "SW0402");
     let path = folder.path().join("broken.space.ron");
     std::fs::write(&path, space).unwrap();
     let ran = run(&["check", path.to_str().unwrap(), "--modules", modules]);
     assert_eq!(ran.status, 1);
     assert!(
-        ran.text().starts_with("wrong  space") && ran.err.contains("SW0401"),
+        ran.text().starts_with("wrong  space") && ran.err.contains("SW0402"),
         "{}{}",
         ran.text(),
         ran.err
@@ -223,9 +226,9 @@ fn emits_every_pass_in_every_target() {
 fn emit_goes_on_where_it_was() {
     let base = tempfile::tempdir().unwrap();
     let (whole, folder) = (base.path().join("whole"), base.path().join("folder"));
-    assert_eq!(emit(&whole, SPACE, &[]).status, 0);
-    let kept = |folder: &Path, more: &[&str]| emit(folder, SPACE, &[&["--format", "json"], more].concat()).json()["kept"].clone();
-    assert_eq!(kept(&whole, &[]), 8);
+    assert_eq!(emit(&whole, LIT, &[]).status, 0);
+    let kept = |folder: &Path, more: &[&str]| emit(folder, LIT, &[&["--format", "json"], more].concat()).json()["kept"].clone();
+    assert_eq!(kept(&whole, &[]), 6);
     let expected = contents(&whole);
     assert_eq!(kept(&folder, &["--sample", "random:3"]), 0);
     // The numbers of a sample are the space's own: what is there is found again.
@@ -234,7 +237,7 @@ fn emit_goes_on_where_it_was() {
     let files: Vec<String> = expected.keys().filter(|name| name.ends_with(".wgsl")).cloned().collect();
     std::fs::remove_file(folder.join(&files[0])).unwrap();
     std::fs::write(folder.join(&files[1]), "damaged").unwrap();
-    assert_eq!(kept(&folder, &[]), 6);
+    assert_eq!(kept(&folder, &[]), 4);
     assert_eq!(contents(&folder), expected);
     // What was written but not noted is not written again.
     std::fs::remove_file(folder.join("manifest.json")).unwrap();
@@ -246,7 +249,7 @@ fn emit_goes_on_where_it_was() {
     // Another target has nothing to go on.
     assert_eq!(kept(&folder, &["--target", "hlsl"]), 0);
     std::fs::write(folder.join("manifest.json"), "{\"name\": \"somebody else's\"}").unwrap();
-    let ran = emit(&folder, SPACE, &[]);
+    let ran = emit(&folder, LIT, &[]);
     assert_eq!(ran.status, 1);
     assert!(ran.err.contains("is no manifest of permutations"), "{}", ran.err);
     assert_eq!(

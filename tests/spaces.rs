@@ -116,7 +116,7 @@ fn the_cover_has_every_legal_pair() {
     let (legal, covered) = (pairs(&all), pairs(&cover));
     println!("{} permutations cover the {} pairs of {}", cover.len(), legal.len(), all.len());
     assert!(legal.is_subset(&covered), "{:?}", legal.difference(&covered).next());
-    assert!(legal.len() > 1000 && cover.len() < 200, "{} {}", legal.len(), cover.len());
+    assert!(legal.len() > 500 && cover.len() < 200, "{} {}", legal.len(), cover.len());
 }
 
 /// The distinct programs of the cover, every pass of each, by hash.

@@ -45,43 +45,198 @@ fn in_slot(text: &str) -> String {
 
 #[test]
 fn sw0103_wrong_shape() {
-    assert_text(&in_slot(r#"(one_of: ["plain"], min: 1)"#), "");
-    assert_text(&in_slot("(fill: {})"), "");
-    assert_text(&in_slot(r#"(module: "scaled", freeze: {"by": (from: 1.0)})"#), "");
+    assert_text(
+        &in_slot(r#"(one_of: ["plain"], min: 1)"#),
+        r#"
+error[SW0103]: a value of another shape is needed for `fill.value`
+  --> a.space.ron:4:44
+  |
+4 |         "value": (one_of: ["plain"], min: 1),
+  |                                            ^ `min` cannot stand beside `one_of`
+"#,
+    );
+    assert_text(
+        &in_slot("(fill: {})"),
+        r#"
+error[SW0103]: a value of another shape is needed for `fill.value`
+  --> a.space.ron:4:27
+  |
+4 |         "value": (fill: {}),
+  |                           ^ one of `module`, `one_of`, `some_of` and `fits` is needed
+"#,
+    );
+    assert_text(
+        &in_slot(r#"(module: "scaled", freeze: {"by": (from: 1.0)})"#),
+        r#"
+error[SW0103]: a value of another shape is needed for `fill.value.freeze.by`
+  --> a.space.ron:4:62
+  |
+4 |         "value": (module: "scaled", freeze: {"by": (from: 1.0)}),
+  |                                                              ^ either `values`, or `from` and `to` with `step` or `steps`
+"#,
+    );
 }
 
 #[test]
 fn sw0102_unknown_field() {
-    assert_text(&in_slot(r#"(one_off: ["plain"])"#), "");
-    assert_text(&error("(\n    root: \"run\",\n    limits: (texture: 3),\n)\n"), "");
+    assert_text(
+        &in_slot(r#"(one_off: ["plain"])"#),
+        r#"
+error[SW0102]: there is no field `one_off` in `fill.value`
+  --> a.space.ron:4:19
+  |
+4 |         "value": (one_off: ["plain"]),
+  |                   ^^^^^^^ unknown field
+  |
+  = did you mean `one_of`?
+  = fields: module, fill, freeze, label, tags, one_of, some_of, fits, of, without, depth, min, max
+"#,
+    );
+    assert_text(
+        &error("(\n    root: \"run\",\n    limits: (texture: 3),\n)\n"),
+        r#"
+error[SW0102]: there is no field `texture` in `limits`
+  --> a.space.ron:3:14
+  |
+3 |     limits: (texture: 3),
+  |              ^^^^^^^ unknown field
+  |
+  = did you mean `textures`?
+  = fields: lacks, textures, samplers, storage_buffers, uniform_buffers, bindings
+"#,
+    );
 }
 
 /// Errors that recipes have too stand where the space says it.
 #[test]
 fn what_recipes_have_too() {
-    assert_text(&in_slot(r#"(one_of: ["plain", "scald"])"#), "");
-    assert_text(&in_slot(r#"(module: "scaled", freeze: {"n": (values: [1, 12])})"#), "");
-    assert_text(&in_slot(r#"(one_of: [[], "plain"])"#), "");
-    assert_text(&in_slot(r#"(fits: Open, without: ["plane"])"#), "");
+    assert_text(
+        &in_slot(r#"(one_of: ["plain", "scald"])"#),
+        r#"
+error[SW0201]: there is no module `scald`
+  --> a.space.ron:4:37
+  |
+4 |         "value": (one_of: ["plain", "scald"]),
+  |                                     ^^^^^^^ named here
+  |
+  = did you mean `scaled`?
+  = modules: plain, scaled, sum
+"#,
+    );
+    assert_text(
+        &in_slot(r#"(module: "scaled", freeze: {"n": (values: [1, 12])})"#),
+        r#"
+error[SW0302]: the value of `n` does not fit
+  --> a.space.ron:4:64
+  |
+4 |         "value": (module: "scaled", freeze: {"n": (values: [1, 12])}),
+  |                                                                ^^ 12 is outside 0 to 9
+"#,
+    );
+    assert_text(
+        &in_slot(r#"(one_of: [[], "plain"])"#),
+        r#"
+error[SW0207]: 0 modules in the slot `value` of `run`
+  --> a.space.ron:4:18
+  |
+4 |         "value": (one_of: [[], "plain"]),
+  |                  ^^^^^^^^^^^^^^^^^^^^^^^ it takes exactly one
+"#,
+    );
+    assert_text(
+        &in_slot(r#"(fits: Open, without: ["plane"])"#),
+        r#"
+error[SW0201]: there is no module `plane`
+  --> a.space.ron:4:41
+  |
+4 |         "value": (fits: Open, without: ["plane"]),
+  |                                         ^^^^^^^ named here
+  |
+  = did you mean `plain`?
+  = modules: run, plain, scaled, sum
+"#,
+    );
 }
 
 #[test]
 fn sw1001_bad_choice() {
-    assert_text(&in_slot("(one_of: [])"), "");
-    assert_text(&in_slot(r#"(module: "sum", fill: {"all": (some_of: ["plain"], min: 2)})"#), "");
+    assert_text(
+        &in_slot("(one_of: [])"),
+        r#"
+error[SW1001]: there is nothing to choose from
+  --> a.space.ron:4:27
+  |
+4 |         "value": (one_of: []),
+  |                           ^^ empty
+"#,
+    );
+    assert_text(
+        &in_slot(r#"(module: "sum", fill: {"all": (some_of: ["plain"], min: 2)})"#),
+        r#"
+error[SW1001]: no choice keeps these bounds
+  --> a.space.ron:4:74
+  |
+4 |         "value": (module: "sum", fill: {"all": (some_of: ["plain"], min: 2)}),
+  |                                                                          ^ there are only 1
+"#,
+    );
     assert_text(
         &in_slot(r#"(module: "sum", fill: {"all": (some_of: ["plain", "sum"], min: 2, max: 1)})"#),
-        "",
+        r#"
+error[SW1001]: no choice keeps these bounds
+  --> a.space.ron:4:81
+  |
+4 |         "value": (module: "sum", fill: {"all": (some_of: ["plain", "sum"], min: 2, max: 1)}),
+  |                                                                                 ^ more than the `max` of 1
+"#,
     );
-    assert_text(&in_slot(r#"(fits: Open, of: "value")"#), "");
-    assert_text(&error("(fits: Open)"), "");
-    assert_text(&error(r#"["run", "run"]"#), "");
+    assert_text(
+        &in_slot(r#"(fits: Open, of: "value")"#),
+        r#"
+error[SW1001]: `of` is for the root, which stands in no slot
+  --> a.space.ron:4:18
+  |
+4 |         "value": (fits: Open, of: "value"),
+  |                  ^^^^^^^^^^^^^^^^^^^^^^^^^ the slot says of which category
+"#,
+    );
+    assert_text(
+        &error("(fits: Open)"),
+        r#"
+error[SW1001]: `of` is for the root, which stands in no slot
+  --> a.space.ron:1:1
+  |
+1 | (fits: Open)
+  | ^^^^^^^^^^^^ of which category?
+"#,
+    );
+    assert_text(
+        &error(r#"["plain", "plain"]"#),
+        r#"
+error[SW1001]: a recipe has exactly one root
+  --> a.space.ron:1:1
+  |
+1 | ["plain", "plain"]
+  | ^^^^^^^^^^^^^^^^^^ this is not always one module
+"#,
+    );
 }
 
 #[test]
 fn sw1002_bad_values() {
     let freeze = |values: &str| in_slot(&format!(r#"(module: "scaled", freeze: {{"by": {values}}})"#));
-    assert_text(&freeze("(values: [])"), "");
+    assert_text(
+        &freeze("(values: [])"),
+        r#"
+error[SW1002]: these are no values for `by`
+  --> a.space.ron:4:61
+  |
+4 |         "value": (module: "scaled", freeze: {"by": (values: [])}),
+  |                                                             ^^ none is here
+  |
+  = name at least one value
+"#,
+    );
     let label = |values: &str| {
         freeze(values)
             .lines()
@@ -111,19 +266,57 @@ fn sw1002_bad_values() {
 #[test]
 fn sw1003_unknown_tag() {
     let rule = |rule: &str| error(&format!("(\n    root: \"run\",\n    rules: [{rule}],\n)\n"));
-    assert_text(&rule(r#"Excludes(when: "plain", tag: "flatt", among: Tree, because: "no")"#), "");
-    assert_text(&rule(r#"Requires(when: "nobody", tag: "flat", among: Tree, because: "no")"#), "");
+    assert_text(
+        &rule(r#"Excludes(when: "plain", tag: "flatt", among: Tree, because: "no")"#),
+        r#"
+error[SW1003]: nothing has the tag `flatt`
+  --> a.space.ron:3:42
+  |
+3 |     rules: [Excludes(when: "plain", tag: "flatt", among: Tree, because: "no")],
+  |                                          ^^^^^^^ unknown
+  |
+  = a tag is a module's name, its category, a property that it claims, a role of one of its fields, or a tag of the space
+  = did you mean `flat`?
+  = tags: flat, pass, plain, run, scaled, sum, value
+"#,
+    );
+    assert_text(
+        &rule(r#"Requires(when: "nobody", tag: "flat", among: Tree, because: "no")"#),
+        r#"
+error[SW1003]: nothing has the tag `nobody`
+  --> a.space.ron:3:28
+  |
+3 |     rules: [Requires(when: "nobody", tag: "flat", among: Tree, because: "no")],
+  |                            ^^^^^^^^ unknown
+  |
+  = a tag is a module's name, its category, a property that it claims, a role of one of its fields, or a tag of the space
+  = tags: flat, pass, plain, run, scaled, sum, value
+"#,
+    );
 }
 
 #[test]
 fn sw1004_space_too_large() {
-    // 64 levels of brackets, and 1024 elements of each: a few lines make a large space.
-    let mut inner = "\"plain\"".to_owned();
-    for _ in 0..3 {
-        inner = format!("(some_of: [{}])", vec![inner; 70].join(", "));
-    }
-    let text = format!("(module: \"run\", fill: {{\"value\": (module: \"sum\", fill: {{\"all\": {inner}}})}})");
-    assert_text(&error(&text), "");
+    // Chains of eight out of twelve modules: a short text makes a large space.
+    let library = (0..12).fold(library(), |library, k| {
+        let slot = r#"slots: {"inner": (interface: "value", prefix: "inner_")}"#;
+        library.module("value", &format!("chain{k}"), slot, VALUE)
+    });
+    let text = "(\n    module: \"run\",\n    fill: {\"value\": (fits: Open)},\n)\n";
+    let found = Space::parse(&library.catalog().unwrap(), "a.space.ron", text).unwrap_err().render();
+    assert_text(
+        &found,
+        r#"
+error[SW1004]: the space has too many alternatives
+  --> a.space.ron:3:21
+  |
+3 |     fill: {"value": (fits: Open)},
+  |                     ^^^^^^^^^^^^ with these
+  |
+  = at most 262144 are taken, those inside one another counted
+  = open fewer levels (`depth`), or leave modules out (`without`)
+"#,
+    );
 }
 
 #[test]
@@ -138,18 +331,38 @@ fn sw1005_space_too_tangled() {
             )
         })
         .collect();
-    let root = format!(
-        "(module: \"run\", fill: {{\"value\": (module: \"sum\", fill: {{\"all\": (some_of: [{}])}})}})",
-        of.join(", ")
+    let value = format!("(module: \"sum\", fill: {{\"all\": (some_of: [{}])}})", of.join(", "));
+    let root = format!("(\n        module: \"run\",\n        fill: {{\"value\": {value}}},\n    )");
+    assert_text(
+        &error(&format!("(\n    root: {root},\n    rules: [{}],\n)\n", rules.concat())),
+        r#"
+error[SW1005]: the rules tie together too much of the space
+  --> a.space.ron:3:17
+  |
+3 |         module: "run",
+  |                 ^^^^^ of this
+  |
+  = every tag, limit and label that rules look at multiplies what must be told apart: use fewer, or open less
+"#,
     );
-    assert_text(&error(&format!("(\n    root: {root},\n    rules: [{}],\n)\n", rules.concat())), "");
 }
 
 #[test]
 fn sw1006_space_uncountable() {
     let of = vec!["\"plain\""; 128].join(", ");
-    let text = format!("(module: \"run\", fill: {{\"value\": (module: \"sum\", fill: {{\"all\": (some_of: [{of}])}})}})");
-    assert_text(&error(&text), "");
+    let text = format!("(\n    module: \"run\",\n    fill: {{\"value\": (module: \"sum\", fill: {{\"all\": (some_of: [{of}])}})}},\n)\n");
+    assert_text(
+        &error(&text),
+        r#"
+error[SW1006]: the space has 340282366920938463463374607431768211455 permutations or more
+  --> a.space.ron:2:13
+  |
+2 |     module: "run",
+  |             ^^^^^ of this
+  |
+  = it can be covered pairwise; to number it, to walk through it or to sample it, leave alternatives out
+"#,
+    );
     // It can be covered all the same: all there, all absent, and few more.
     let space = Space::parse(&library().catalog().unwrap(), "a.space.ron", &text).unwrap_or_else(|report| panic!("{report}"));
     assert!((2..40).contains(&space.pairwise().len()), "{}", space.pairwise().len());
@@ -163,19 +376,56 @@ fn sw1007_space_empty() {
         &error(
             "(\n    root: (module: \"run\", fill: {\"value\": \"plain\"}),\n    rules: [Requires(tag: \"sum\", among: Children, because: \"sums\")],\n)\n",
         ),
-        "",
+        r#"
+error[SW1007]: no permutation of the space is legal
+  --> a.space.ron:2:20
+  |
+2 |     root: (module: "run", fill: {"value": "plain"}),
+  |                    ^^^^^ nothing comes of this
+  |
+  = without `rules[0]` something is: sums
+  = the rules of its modules, its own and its limits leave nothing; emit one of its recipes to see which rule it breaks
+"#,
     );
     assert_text(
         &error("(\n    root: (module: \"run\", fill: {\"value\": \"plain\"}),\n    limits: (bindings: 0),\n)\n"),
-        "",
+        r#"
+error[SW1007]: no permutation of the space is legal
+  --> a.space.ron:2:20
+  |
+2 |     root: (module: "run", fill: {"value": "plain"}),
+  |                    ^^^^^ nothing comes of this
+  |
+  = without `limits` something is
+  = the rules of its modules, its own and its limits leave nothing; emit one of its recipes to see which rule it breaks
+"#,
     );
     assert_text(
         &error("(\n    root: (module: \"run\", fill: {\"value\": \"scaled\"}),\n    limits: (uniform_buffers: 0),\n)\n"),
-        "",
+        r#"
+error[SW1007]: no permutation of the space is legal
+  --> a.space.ron:3:13
+  |
+3 |     limits: (uniform_buffers: 0),
+  |             ^^^^^^^^^^^^^^^^^^^^ no tree keeps these limits
+  |
+  = what every tree shares comes to 1 uniform buffers, 0 allowed
+"#,
     );
 }
 
 #[test]
 fn sw0114_unknown_capability() {
-    assert_text(&error("(\n    root: \"run\",\n    limits: (lacks: [\"SHADER_FLOAT61\"]),\n)\n"), "");
+    assert_text(
+        &error("(\n    root: \"run\",\n    limits: (lacks: [\"SHADER_FLOAT61\"]),\n)\n"),
+        r#"
+error[SW0114]: there is no capability `SHADER_FLOAT61`
+  --> a.space.ron:3:22
+  |
+3 |     limits: (lacks: ["SHADER_FLOAT61"]),
+  |                      ^^^^^^^^^^^^^^^^ unknown
+  |
+  = did you mean `SHADER_FLOAT16`?
+"#,
+    );
 }

@@ -56,6 +56,8 @@ pub struct Space {
     /// `None` where it is more than can be numbered.
     count: Option<u128>,
     possible: Vec<bool>,
+    /// Of a space without permutations, what of its own text alone is the reason.
+    blame: Vec<String>,
 }
 
 impl Space {
@@ -73,6 +75,14 @@ impl Space {
     /// It names what is not there, or is too large or too tangled.
     pub fn open(catalog: &Catalog, file: &SpaceFile) -> Result<Self, Report> {
         check_tags(catalog, file)?;
+        let mut space = Self::count_all(catalog, file)?;
+        if space.count == Some(0) {
+            space.blame = blame(catalog, file);
+        }
+        Ok(space)
+    }
+
+    fn count_all(catalog: &Catalog, file: &SpaceFile) -> Result<Self, Report> {
         let mut tree = open::open(catalog, file)?;
         let modules = tree.exprs.iter().filter_map(|expr| match expr {
             Expr::Module(module) => Some(module.module.as_ref()),
@@ -105,6 +115,7 @@ impl Space {
             legal,
             count: (sum < u128::MAX).then_some(sum),
             possible,
+            blame: Vec::new(),
         })
     }
 
@@ -121,7 +132,7 @@ impl Space {
         self.count.ok_or_else(|| {
             let message = format!("the space has {} permutations or more", u128::MAX);
             Diagnostic::new(codes::SPACE_UNCOUNTABLE, message)
-                .at(&self.place.file, self.place.span(), "of this")
+                .at(&self.place.file, self.place.name_span(), "of this")
                 .note("it can be covered pairwise; to number it, to walk through it or to sample it, leave alternatives out")
                 .into()
         })
@@ -135,9 +146,14 @@ impl Space {
         if self.count != Some(0) {
             return Ok(());
         }
-        Err(Diagnostic::new(codes::SPACE_EMPTY, "no permutation of the space is legal")
-            .at(&self.place.file, self.place.span(), "nothing comes of this")
-            .note("rules, limits and capabilities leave nothing: emit one of its recipes to see which rule it breaks")
+        let found = Diagnostic::new(codes::SPACE_EMPTY, "no permutation of the space is legal").at(
+            &self.place.file,
+            self.place.name_span(),
+            "nothing comes of this",
+        );
+        let found = self.blame.iter().fold(found, |found, text| found.note(text.clone()));
+        Err(found
+            .note("the rules of its modules, its own and its limits leave nothing; emit one of its recipes to see which rule it breaks")
             .into())
     }
 
@@ -257,9 +273,31 @@ impl Space {
     }
 }
 
+/// What of a space's own text leaves nothing by itself: without it something is legal.
+fn blame(catalog: &Catalog, file: &SpaceFile) -> Vec<String> {
+    let something = |file: &SpaceFile| Space::count_all(catalog, file).is_ok_and(|space| space.count != Some(0));
+    let mut found = Vec::new();
+    for (index, rule) in file.rules.iter().enumerate() {
+        let mut without = file.clone();
+        without.rules.remove(index);
+        if something(&without) {
+            let (SpaceRule::Requires { because, .. } | SpaceRule::Excludes { because, .. }) = rule;
+            found.push(format!("without `rules[{index}]` something is: {because}"));
+        }
+    }
+    let without = SpaceFile {
+        limits: Limits::default(),
+        ..file.clone()
+    };
+    if file.limits != without.limits && something(&without) {
+        found.push("without `limits` something is".to_owned());
+    }
+    found
+}
+
 fn tangled(place: &Place) -> Report {
     Diagnostic::new(codes::SPACE_TOO_TANGLED, "the rules tie together too much of the space")
-        .at(&place.file, place.span(), "of this")
+        .at(&place.file, place.name_span(), "of this")
         .note("every tag, limit and label that rules look at multiplies what must be told apart: use fewer, or open less")
         .into()
 }

@@ -151,7 +151,7 @@ impl Opener<'_> {
     fn push(&mut self, expr: Expr, length: (u32, u32), place: &Place) -> Result<ExprId, Report> {
         if self.tree.exprs.len() >= MOST_EXPRESSIONS {
             return Err(Diagnostic::new(codes::SPACE_TOO_LARGE, "the space has too many alternatives")
-                .at(&place.file, place.span(), "with these")
+                .at(&place.file, place.name_span(), "with these")
                 .note(format!("at most {MOST_EXPRESSIONS} are taken, those inside one another counted"))
                 .note("open fewer levels (`depth`), or leave modules out (`without`)")
                 .into());

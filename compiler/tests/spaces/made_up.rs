@@ -55,7 +55,7 @@ fn module(texts: Texts, tape: &mut Tape, depth: usize, level: &str, number: usiz
     let mut slots = String::new();
     let mut sum = format!("x * {}.0", 2 + number);
     for below in LEVELS.iter().skip(depth + 1) {
-        if tape.below(3) == 0 {
+        if tape.below(4) == 0 {
             continue;
         }
         let arity = tape.one(&["Single", "Optional", "List"]);
@@ -163,7 +163,7 @@ fn node(tape: &mut Tape, manifest: &Manifests, level: &str, depth: usize) -> Str
         let values = tape.one(&["3", "(values: [1, 2])", "(from: 1, to: 3, steps: 2)"]);
         fields += &format!("freeze: {{\"k\": {values}}}, ");
     }
-    if tape.below(3) == 0 {
+    if tape.below(2) == 0 {
         fields += "label: \"l\", ";
     }
     if tape.below(4) == 0 {

@@ -283,8 +283,10 @@ impl Naive<'_> {
     }
 
     fn has(&self, t: &T, tag: &str, of_space: bool) -> bool {
-        let properties = &self.manifest(t).manifest.properties;
-        t.module == tag || t.category == tag || properties.iter().any(|p| p == tag) || of_space && t.tags.iter().any(|own| own == tag)
+        let manifest = &self.manifest(t).manifest;
+        let role = manifest.instances.values().any(|field| field.role.as_deref() == Some(tag));
+        let by_itself = t.module == tag || t.category == tag || manifest.properties.iter().any(|p| p == tag) || role;
+        by_itself || of_space && t.tags.iter().any(|own| own == tag)
     }
 
     /// A text that is equal for equal trees: defaults written out, as the compiler compares subtrees.
