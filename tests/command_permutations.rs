@@ -76,6 +76,7 @@ fn lists() {
 #[test]
 fn what_is_refused() {
     bad(&["permutations", SPACE, "--sample", "some"], 2, &["all, pairwise, or random:N"]);
+    bad(&["permutations", SPACE, "--sample", "random:99999999999"], 2, &["up to 10000000"]);
     bad(&["permutations", SPACE, "--count", "--check"], 2, &["--check"]);
     bad(
         &["permutations", "absent.space.ron"],
@@ -141,6 +142,14 @@ fn checks() {
         (1, &2.into(), &"1".into())
     );
     assert_eq!(json["failed"][0]["diagnostics"][0]["code"], "SW0402");
+    // A BRDF has no entry points: its functions are linked, as `check` does it with recipes.
+    let path = folder.path().join("brdf.space.ron");
+    std::fs::write(&path, "(fits: Open, of: \"brdf\", without: [\"broken\"])").unwrap();
+    assert!(
+        good(&["check", path.to_str().unwrap(), "--modules", modules])
+            .text()
+            .starts_with("ok     space")
+    );
     let path = folder.path().join("broken.space.ron");
     std::fs::write(&path, space).unwrap();
     let ran = run(&["check", path.to_str().unwrap(), "--modules", modules]);

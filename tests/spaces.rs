@@ -119,6 +119,32 @@ fn the_cover_has_every_legal_pair() {
     assert!(legal.len() > 500 && cover.len() < 200, "{} {}", legal.len(), cover.len());
 }
 
+/// Catches a legal recipe that does not compile. Of a library with many, a sample.
+#[test]
+fn every_legal_recipe_compiles() {
+    const MOST: u128 = 4000;
+    let numbers = match STANDARD.count() {
+        Ok(count) if count <= MOST => (0..count).collect(),
+        _ => STANDARD.random(MOST as usize, 2).expect("it can be numbered"),
+    };
+    let drawn: Vec<Permutation> = numbers.into_iter().filter_map(|index| STANDARD.get(index)).collect();
+    let work = Work {
+        passes: Passes::One("main".to_owned()),
+        threads: 2,
+        cancel: &AtomicBool::new(false),
+        progress: &|_| {},
+    };
+    let mut distinct = BTreeSet::new();
+    for (permutation, hash) in drawn.iter().zip(compile_all(&CATALOG, &drawn, &work, |_, mut compiled| {
+        compiled.remove(0).1.map(|program| program.hash())
+    })) {
+        let hash = hash.expect("nobody stops it");
+        distinct.insert(hash.unwrap_or_else(|report| panic!("{}\n{report}", permutation.recipe.source.text)));
+    }
+    println!("{} permutations, {} distinct programs", drawn.len(), distinct.len());
+    assert!(drawn.len() > 100 && distinct.len() > 100);
+}
+
 /// The distinct programs of the cover, every pass of each, by hash.
 fn programs() -> Vec<Program> {
     let cover = STANDARD.pairwise();

@@ -164,7 +164,10 @@ impl Space {
 
     /// Alternatives that are listed but in no legal permutation: place and alternative.
     pub fn never(&self) -> Vec<Chosen> {
-        let options = self.tree.points.iter().flat_map(|point| {
+        // Of what is never itself, what is inside needs no word.
+        let alive = |&(parent, option): &(usize, u32)| self.possible[self.tree.points[parent].first_value + option as usize];
+        let points = self.tree.points.iter().filter(|point| point.parent.as_ref().is_none_or(alive));
+        let options = points.flat_map(|point| {
             let alive = self.possible[point.first_value..].iter().take(point.options.len());
             let dead = point.options.iter().zip(alive).filter(|&(_, alive)| !alive);
             dead.map(|(option, _)| Chosen {
