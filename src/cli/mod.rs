@@ -11,6 +11,7 @@ mod list;
 mod needs;
 mod new;
 mod output;
+mod permutations;
 mod probe;
 mod render;
 mod show;
@@ -43,7 +44,7 @@ pub struct Arguments {
 
 const EXIT_STATUS: &str = "\
 A RECIPE is a file, an inline RON tree such as '(module: \"microfacet\", fill: {\"ndf\": \"ggx\"})', a module's name, or - for standard input.
-Exit status: 0 done, 1 the input is wrong, 2 usage, 3 no usable GPU, 70 a bug of ours.";
+Exit status: 0 done, 1 the input is wrong, 2 usage, 3 no usable GPU, 70 a bug of ours, 130 interrupted.";
 
 /// How results and errors are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -72,6 +73,8 @@ enum Command {
     Why(why::Options),
     /// Says what changes from one recipe to another, and which choice did it
     Diff(diff::Options),
+    /// Counts, lists, checks or writes the permutations of a space
+    Permutations(permutations::Options),
     /// Draws a scene into a PNG (displayed) or EXR (linear, cd/m2) file
     Render(render::Options),
     /// Evaluates an interface function on the GPU over a table of inputs
@@ -128,6 +131,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Graph(options) => graph::run(&context(&arguments.modules)?, &options),
         Command::Why(options) => why::run(&context(&arguments.modules)?, &options),
         Command::Diff(options) => diff::run(&context(&arguments.modules)?, &options),
+        Command::Permutations(options) => permutations::run(&context(&arguments.modules)?, &options),
         Command::Render(options) => render::run(context(&arguments.modules)?, &options),
         Command::Probe(options) => probe::run(&context(&arguments.modules)?, &options),
     }

@@ -1,9 +1,9 @@
 //! A recipe and a catalog to a tree of modules, with every slot filled and every rule kept.
 
-mod fill;
+pub mod fill;
 mod instances;
 mod resources;
-mod rules;
+pub mod rules;
 
 use std::ops::Range;
 use std::sync::Arc;
