@@ -1,9 +1,10 @@
 //! Why something is in a shader: who calls it, whose it is, and which line of RON brought that module in.
 
 use crate::parse::Origin;
+use crate::parse::joined;
 use crate::parse::lex::lex;
 use crate::parse::scan::{Item, ItemKind};
-use crate::plan::{Body, GROUPS, Plan, joined};
+use crate::plan::{Body, GROUPS, Plan};
 use crate::reflect::{ParamPlace, Reflection};
 
 /// Why something is in a shader.

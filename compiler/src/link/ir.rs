@@ -313,7 +313,7 @@ impl<'p> Linker<'p> {
             }
         }
         let group = GROUPS[block.group as usize];
-        let ty = self.insert_struct(Some(crate::plan::joined(group, "Params")), members, Span::default());
+        let ty = self.insert_struct(Some(crate::parse::joined(group, "Params")), members, Span::default());
         let variable = GlobalVariable {
             name: Some(format!("{group}_params")),
             space: naga::AddressSpace::Uniform,

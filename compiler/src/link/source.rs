@@ -8,8 +8,8 @@ use std::ops::Range;
 use super::edits::dead_text;
 use crate::manifest::Combine;
 use crate::parse::scan::{Item, ItemKind, whole_lines};
-use crate::parse::{Meaning, Origin, StructKey, Unit, typed_wgsl, wgsl_type};
-use crate::plan::{Body, GROUPS, Plan, Planned, joined};
+use crate::parse::{Meaning, Origin, StructKey, Unit, joined, typed_wgsl, wgsl_type};
+use crate::plan::{Body, GROUPS, Plan, Planned};
 
 /// Writes the source form.
 pub fn write_source(plan: &Plan) -> String {

@@ -79,7 +79,8 @@ impl Linker<'_> {
             return done;
         };
         let s = &plan.structs.list[id];
-        let name = plan.name(s.home, &s.name).unwrap_or(&s.name).to_owned();
+        let own = s.name(&plan.homes);
+        let name = plan.name(s.home, own).unwrap_or(own).to_owned();
         let kept: Vec<StructMember> = members
             .iter()
             .enumerate()

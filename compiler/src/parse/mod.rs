@@ -7,6 +7,7 @@ mod compose;
 mod cuts;
 mod facts;
 mod filter;
+mod joined;
 pub mod lex;
 mod mentions;
 mod operands;
@@ -21,6 +22,7 @@ pub use compose::{Interface, Needs, Origin, SlotNeed, compose, constant_name, fi
 pub use cuts::{Constructor, Cuts, Let, Value};
 pub use facts::{Action, Call, Facts, Store, struct_type};
 pub use filter::{Filter, word_hash};
+pub use joined::{Joined, joined};
 pub use mentions::Meaning;
 pub use operands::{expression_operands, expression_operands_mut, statement_operands_mut};
 pub use unit::{StructKey, Unit, chain, check_interface, labelled, parse_unit, parse_whole, readable};

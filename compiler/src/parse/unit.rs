@@ -13,6 +13,7 @@ use super::compose::{Composed, Interface, Needs, Origin, compose};
 use super::cuts::{Cuts, cuts};
 use super::facts::{Facts, facts};
 use super::filter::{Filter, word_hash};
+use super::joined::JoinedNames;
 use super::mentions::{Mention, mentions};
 use super::pure::droppable;
 use super::scan::{Item, Scan};
@@ -55,6 +56,8 @@ pub struct Unit {
     pub structs: HashMap<Handle<naga::Type>, StructKey>,
     /// Structs whose layout a host or the language sees: never trimmed.
     pub fixed_structs: HashSet<StructKey>,
+    /// Linked names of its items.
+    pub joined: JoinedNames,
     /// Words that linked names must not be: locals, and words of the language that the text uses.
     pub words: HashSet<String>,
     /// The same, for asking quickly.
@@ -121,6 +124,7 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     let structs = named_structs(&ir, &composed);
     let mut unit = Unit {
         fixed_structs: HashSet::default(),
+        joined: JoinedNames::default(),
         words: HashSet::default(),
         words_filter: Filter::default(),
         interfaces: BTreeSet::new(),

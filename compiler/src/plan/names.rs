@@ -6,18 +6,29 @@ use rustc_hash::FxHashSet as HashSet;
 
 use super::{Body, Home, Plan};
 use crate::parse::scan::ItemKind;
-use crate::parse::{Filter, Unit, constant_name, word_hash};
+use crate::parse::{Filter, Joined, Unit, constant_name, joined, word_hash};
 
-/// Emitted names of the items of all homes. Functions that are not planned have none.
+/// Emitted names of the items of all homes.
 #[derive(Debug, Default)]
 pub struct Names(Vec<HomeNames>);
 
 #[derive(Debug, Default)]
 struct HomeNames {
-    /// By the item's index in the unit's scan.
-    items: Vec<Option<String>>,
+    /// What the unit's items are called with the instance's name before them, by their index in its scan.
+    joined: Arc<Joined>,
+    /// Items that are called something else, since that name is taken.
+    renamed: Vec<(usize, String)>,
     /// Of what the linker itself adds to the unit: name there, emitted name. Constants, overrides, `Instance`, `instances`.
     added: Vec<(String, String)>,
+}
+
+impl HomeNames {
+    fn item(&self, item: usize) -> Option<&str> {
+        match self.renamed.iter().find(|(index, _)| *index == item) {
+            Some((_, name)) => Some(name),
+            None => self.joined.get(item).map(|(name, _)| name.as_str()),
+        }
+    }
 }
 
 impl Names {
@@ -25,14 +36,14 @@ impl Names {
     pub fn get(&self, homes: &[Home], home: usize, name: &str) -> Option<&str> {
         let names = self.0.get(home)?;
         match homes[home].unit.scan.item_index(name) {
-            Some(index) => names.items.get(index)?.as_deref(),
+            Some(index) => names.item(index),
             None => names.added.iter().find(|(own, _)| own == name).map(|(_, emitted)| emitted.as_str()),
         }
     }
 
     /// The emitted name of an item by its index in the unit's scan.
     pub fn of_item(&self, home: usize, item: usize) -> Option<&str> {
-        self.0.get(home)?.items.get(item)?.as_deref()
+        self.0.get(home)?.item(item)
     }
 
     /// The emitted name of what the linker adds to a unit, by its index: constants, overrides, `Instance`, `instances`.
@@ -40,11 +51,11 @@ impl Names {
         self.0.get(home)?.added.get(index).map(|(_, emitted)| emitted.as_str())
     }
 
-    /// All of them: home, name there, emitted name.
+    /// All of them: home, name there, emitted name. Of functions that are not planned it is what they would be called.
     pub fn all<'n>(&'n self, homes: &'n [Home]) -> impl Iterator<Item = (usize, &'n str, &'n str)> {
         self.0.iter().enumerate().flat_map(|(home, names)| {
-            let items = names.items.iter().zip(&homes[home].unit.scan.items);
-            let items = items.filter_map(|(emitted, item)| Some((item.name.as_str(), emitted.as_deref()?)));
+            let items = homes[home].unit.scan.items.iter().enumerate();
+            let items = items.filter_map(|(index, item)| Some((item.name.as_str(), names.item(index)?)));
             let added = names.added.iter().map(|(own, emitted)| (own.as_str(), emitted.as_str()));
             items.chain(added).map(move |(own, emitted)| (home, own, emitted))
         })
@@ -71,7 +82,7 @@ pub fn assign(plan: &mut Plan) {
         let unit = &plan.homes[home].unit;
         let prefix = &plan.homes[home].prefix;
         let given = &mut names[home];
-        given.items = vec![None; unit.scan.items.len()];
+        given.joined = unit.joined.get(unit, prefix);
         planned[home].sort_unstable();
         let mut functions = planned[home].iter().peekable();
         for (index, item) in unit.scan.items.iter().enumerate() {
@@ -80,17 +91,19 @@ pub fn assign(plan: &mut Plan) {
                 continue;
             }
             let entry = function.is_some_and(|f| matches!(plan.functions[f].body, Body::Entry(_)));
+            let (joined, hash) = &given.joined[index];
             // The root's entry points are what a host calls by name.
-            let wanted = if entry && home == 0 {
-                item.name.clone()
+            let renamed = if entry && home == 0 {
+                Some(taken.free(item.name.clone()))
+            } else if taken.take(joined, *hash) {
+                None
             } else {
-                joined(prefix, &item.name)
+                Some(taken.free(joined.clone()))
             };
-            let name = taken.free(wanted);
             if let Some(function) = function {
-                plan.functions[function].name.clone_from(&name);
+                plan.functions[function].name.clone_from(renamed.as_ref().unwrap_or(joined));
             }
-            given.items[index] = Some(name);
+            given.renamed.extend(renamed.map(|name| (index, name)));
         }
         for name in unit.needs.constants.keys().chain(unit.needs.overrides.keys()) {
             given.added.push((constant_name(name), taken.free(joined(prefix, name))));
@@ -143,40 +156,17 @@ impl Taken {
         taken
     }
 
+    /// Takes a name if it is free.
+    fn take(&mut self, name: &str, hash: u64) -> bool {
+        let is_word = self.words.may_have(hash) && self.units.iter().any(|u| u.words.contains(name));
+        !is_word && self.given.insert(hash)
+    }
+
     fn free(&mut self, wanted: String) -> String {
         let mut name = wanted;
-        loop {
-            let hash = word_hash(&name);
-            let is_word = self.words.may_have(hash) && self.units.iter().any(|u| u.words.contains(&name));
-            if !is_word && self.given.insert(hash) {
-                return name;
-            }
+        while !self.take(&name, word_hash(&name)) {
             name.push('_');
         }
+        name
     }
-}
-
-/// Instance and item in the item's own style: `point_light`, `PointInstance`, `POINT_LIMIT`.
-pub fn joined(prefix: &str, name: &str) -> String {
-    if prefix.is_empty() {
-        return name.to_owned();
-    }
-    let upper = name.bytes().any(|c| c.is_ascii_uppercase());
-    let lower = name.bytes().any(|c| c.is_ascii_lowercase());
-    let mut joined = String::with_capacity(prefix.len() + 1 + name.len());
-    if upper && !lower {
-        joined.push_str(prefix);
-        joined.make_ascii_uppercase();
-        joined.push('_');
-    } else if name.starts_with(|c: char| c.is_ascii_uppercase()) {
-        for part in prefix.split('_').filter(|p| !p.is_empty()) {
-            let (head, tail) = part.split_at(1);
-            joined.extend(head.chars().map(|c| c.to_ascii_uppercase()));
-            joined.push_str(tail);
-        }
-    } else {
-        joined.push_str(prefix);
-        joined.push('_');
-    }
-    joined + name
 }

@@ -286,16 +286,16 @@ impl Reach<'_> {
         })
     }
 
-    fn slot(&mut self, home: usize, slot: &str, function: &str, stub: Handle<naga::Function>) -> Result<Target, Report> {
+    fn slot(&self, home: usize, slot: &str, function: &str, stub: Handle<naga::Function>) -> Result<Target, Report> {
         let node = self.node(home);
-        let Some(filled) = node.and_then(|n| self.tree.nodes[n].fills.get(slot)).cloned() else {
+        let Some((declared, nodes)) = node.and_then(|n| self.tree.nodes[n].slot(slot)) else {
             return self.neutral(slot, function);
         };
-        match filled.nodes[..] {
-            [] => self.neutral(&filled.interface, function),
+        match nodes[..] {
+            [] => self.neutral(&declared.interface, function),
             [one] => self.implementation(one, function),
             _ => {
-                let rule = self.rule(home, &filled.interface, slot, function)?;
+                let rule = self.rule(home, &declared.interface, slot, function)?;
                 Ok((
                     home,
                     Body::Combined {
@@ -322,9 +322,7 @@ impl Reach<'_> {
             codes::NOT_COMBINABLE,
             format!("`{interface}` does not say how results of `{function}` combine in the slot `{slot}`"),
         );
-        let second = self
-            .node(home)
-            .and_then(|n| self.tree.nodes[n].fills.get(slot)?.nodes.get(1).copied());
+        let second = self.node(home).and_then(|n| self.tree.nodes[n].slot(slot)?.1.get(1).copied());
         if let Some(second) = second {
             let place = &self.tree.nodes[second].place;
             diagnostic = diagnostic.at(&place.file, place.name_span(), "a second module stands in that slot here");
@@ -343,8 +341,8 @@ impl Reach<'_> {
 
     fn list_targets(&self, home: usize, slot: &str, function: &str) -> Result<Vec<Target>, Report> {
         let Some(node) = self.node(home) else { return Ok(Vec::new()) };
-        let nodes = self.tree.nodes[node].fills.get(slot).map(|f| f.nodes.clone()).unwrap_or_default();
-        nodes.into_iter().map(|n| self.implementation(n, function)).collect()
+        let nodes = self.tree.nodes[node].slot(slot).map_or(&[][..], |(_, nodes)| nodes);
+        nodes.iter().map(|&n| self.implementation(n, function)).collect()
     }
 
     fn implementation(&self, node: usize, function: &str) -> Result<Target, Report> {

@@ -11,8 +11,8 @@ use crate::parse::scan::Scan;
 pub struct Struct {
     /// Home that declares it.
     pub home: usize,
-    /// Name there.
-    pub name: String,
+    /// A home whose unit knows it, and its type there.
+    pub known: (usize, Handle<Type>),
     /// Whether a host or the language fixes its layout.
     pub fixed: bool,
     /// Which members are alive.
@@ -20,15 +20,20 @@ pub struct Struct {
 }
 
 impl Struct {
+    /// Its name where it is declared.
+    pub fn name<'h>(&self, homes: &'h [Home]) -> &'h str {
+        let (home, ty) = self.known;
+        homes[home].unit.ir.types[ty].name.as_deref().unwrap_or_default()
+    }
+
     /// The member that stays of a struct whose members nobody reads: a built-in value, or else the first.
     pub fn kept_when_empty(&self, homes: &[Home]) -> u32 {
-        let mut types = homes[self.home].unit.ir.types.iter();
-        let declared = types.find_map(|(_, t)| match &t.inner {
-            naga::TypeInner::Struct { members, .. } if t.name.as_deref() == Some(&self.name) => Some(members),
-            _ => None,
-        });
+        let (home, ty) = self.known;
         let is_builtin = |m: &naga::StructMember| matches!(m.binding, Some(naga::Binding::BuiltIn(_)));
-        declared.and_then(|members| members.iter().position(is_builtin)).unwrap_or(0) as u32
+        match &homes[home].unit.ir.types[ty].inner {
+            naga::TypeInner::Struct { members, .. } => members.iter().position(is_builtin).unwrap_or(0) as u32,
+            _ => 0,
+        }
     }
 }
 
@@ -65,7 +70,7 @@ impl Structs {
             let id = *self.declared[declared][place(items, name)].get_or_insert_with(|| {
                 self.list.push(Struct {
                     home: declared,
-                    name: name.clone(),
+                    known: (home, handle),
                     fixed: false,
                     live: vec![false; members],
                 });

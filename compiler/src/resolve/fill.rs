@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
-use super::{Filled, Place, Tree, TreeNode, Way, rules};
+use super::{Place, Tree, TreeNode, Way, rules};
 use crate::catalog::{Catalog, Module};
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::limits;
@@ -72,7 +72,7 @@ impl Resolver<'_> {
             module: Arc::clone(&module),
             parent,
             path: path.clone(),
-            fills: IndexMap::new(),
+            fills: Vec::with_capacity(module.manifest.slots.len()),
             constants,
             label: node.label.clone(),
             place: place.clone(),
@@ -80,12 +80,7 @@ impl Resolver<'_> {
         unknown_slots(&module, node.fill.keys(), &place)?;
         for (name, slot) in &module.manifest.slots {
             let nodes = self.slot(index, &module, node, (name, slot), &path, &place, depth)?;
-            let filled = Filled {
-                arity: slot.arity,
-                interface: slot.interface.clone(),
-                nodes,
-            };
-            self.tree.nodes[index].fills.insert(name.clone(), filled);
+            self.tree.nodes[index].fills.push(nodes);
         }
         Ok(index)
     }

@@ -79,9 +79,10 @@ impl Instances {
 
 /// The node below `first` that stands where `node` stands below `parent`.
 fn twin_below(tree: &Tree, parent: usize, node: usize, first: usize) -> Option<usize> {
-    tree.nodes[parent].fills.iter().find_map(|(slot, filled)| {
-        let position = filled.nodes.iter().position(|&n| n == node)?;
-        tree.nodes[first].fills.get(slot)?.nodes.get(position).copied()
+    // Equal subtrees have one module, and so the same slots.
+    tree.nodes[parent].fills.iter().enumerate().find_map(|(slot, nodes)| {
+        let position = nodes.iter().position(|&n| n == node)?;
+        tree.nodes[first].fills.get(slot)?.get(position).copied()
     })
 }
 
@@ -91,11 +92,9 @@ fn structures(tree: &Tree) -> Vec<usize> {
     let mut known = HashMap::default();
     for (index, node) in tree.nodes.iter().enumerate().rev() {
         let constants: Vec<(&str, String)> = node.constants.iter().map(|(n, (_, value))| (n.as_str(), value.wgsl())).collect();
-        let slots: Vec<(&str, Vec<usize>)> = node
-            .fills
-            .iter()
-            .map(|(slot, filled)| (slot.as_str(), filled.nodes.iter().map(|&child| numbers[child]).collect()))
-            .collect();
+        // Of one module the slots are the same, in one order.
+        let slots = node.fills.iter().map(|nodes| nodes.iter().map(|&child| numbers[child]).collect());
+        let slots: Vec<Vec<usize>> = slots.collect();
         let next = known.len();
         let key = (&node.module.category, &node.module.name, &node.label, constants, slots);
         numbers[index] = *known.entry(key).or_insert(next);

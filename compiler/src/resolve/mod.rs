@@ -12,7 +12,7 @@ use indexmap::IndexMap;
 
 use crate::catalog::Module;
 use crate::diagnostics::SourceFile;
-use crate::manifest::{Arity, Locator, Step, Typed, Value};
+use crate::manifest::{Locator, Slot, Step, Typed, Value};
 
 pub use fill::{resolve, resolve_root};
 pub use instances::{Instance, Instances};
@@ -107,17 +107,6 @@ impl Place {
     }
 }
 
-/// A slot with what stands in it.
-#[derive(Clone, Debug)]
-pub struct Filled {
-    /// How many the slot takes.
-    pub arity: Arity,
-    /// Category of what fills it.
-    pub interface: String,
-    /// Tree nodes, in order.
-    pub nodes: Vec<usize>,
-}
-
 /// A module in its place in the tree.
 #[derive(Clone, Debug)]
 pub struct TreeNode {
@@ -127,14 +116,22 @@ pub struct TreeNode {
     pub parent: Option<usize>,
     /// Where it stands: `main`, `main.brdf.ndf`, `main.lights[1]`.
     pub path: String,
-    /// Its slots.
-    pub fills: IndexMap<String, Filled>,
+    /// What stands in its slots, as tree nodes: in the order of the manifest's slots.
+    pub fills: Vec<Vec<usize>>,
     /// Parameters that are constants here, with their values: frozen ones and those that are always constants.
     pub constants: IndexMap<String, (Value, Typed)>,
     /// Keeps it apart from an equal subtree.
     pub label: Option<String>,
     /// Where it was named.
     pub place: Place,
+}
+
+impl TreeNode {
+    /// A slot, and what stands in it.
+    pub fn slot(&self, name: &str) -> Option<(&Slot, &[usize])> {
+        let (index, _, slot) = self.module.manifest.slots.get_full(name)?;
+        Some((slot, self.fills.get(index)?))
+    }
 }
 
 /// A resolved tree; node 0 is the root, parents precede their children.
