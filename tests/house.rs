@@ -71,6 +71,10 @@ fn the_arrows_go_one_way() {
         ("shadewright-modules", &["shadewright-compiler"][..]),
         ("shadewright-runtime", &["shadewright-compiler", "shadewright-modules"][..]),
         (
+            "shadewright-benchmark",
+            &["shadewright-compiler", "shadewright-modules", "shadewright-runtime"][..],
+        ),
+        (
             "shadewright",
             &["shadewright-compiler", "shadewright-modules", "shadewright-runtime"][..],
         ),

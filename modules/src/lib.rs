@@ -23,6 +23,8 @@ pub mod cases;
 mod embedded;
 mod folder;
 mod overlay;
+#[cfg(feature = "wesl")]
+mod wesl;
 
 use std::sync::Arc;
 
@@ -31,6 +33,8 @@ use shadewright_compiler::Library;
 pub use embedded::Embedded;
 pub use folder::Folder;
 pub use overlay::Overlay;
+#[cfg(feature = "wesl")]
+pub use wesl::Wesl;
 
 /// The standard library.
 pub fn library() -> Arc<dyn Library> {

@@ -96,7 +96,10 @@ impl Context {
         }
         let mut layers: Vec<Arc<dyn compiler::Library>> = Vec::new();
         for folder in folders.iter().rev() {
-            layers.push(Arc::new(Folder::new(folder)));
+            let folder = Folder::new(folder);
+            #[cfg(feature = "wesl")]
+            let folder = modules::Wesl(folder);
+            layers.push(Arc::new(folder));
         }
         layers.push(modules::library());
         let library: Arc<dyn compiler::Library> = Arc::new(Overlay(layers));

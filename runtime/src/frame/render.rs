@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
+use shadewright_compiler::Validated;
 use shadewright_compiler::catalog::Catalog;
 use shadewright_compiler::manifest::Node;
 use shadewright_compiler::program::Program;
@@ -86,6 +87,15 @@ impl Renderer {
     /// The recipe is wrong.
     pub fn program(&self, recipe: &Node) -> Result<Arc<Program>, RuntimeError> {
         Ok(self.programs.get(recipe, "main")?)
+    }
+
+    /// Draws with this module instead of the program's own, however it was made: for holding another way to link against ours. Say so before
+    /// the first frame. It must have the program's entry points, and what it reads must be bound where the program binds it.
+    ///
+    /// # Errors
+    /// wgpu rejects the module.
+    pub fn draw_with(&mut self, program: &Program, module: &Validated) -> Result<(), RuntimeError> {
+        Ok(self.pipelines.draw_with(program, module)?)
     }
 
     /// Draws a frame. It stays on the GPU: see [`Targets`].

@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use rayon::prelude::*;
+use shadewright_compiler::Validated;
 use shadewright_compiler::program::Program;
 use shadewright_compiler::reflect::{EntryPoint, Stage};
 
@@ -116,6 +117,15 @@ impl Pipelines {
         }
     }
 
+    /// Takes this module wherever the program's own would be taken, however it was made. It must have the program's entry points, and what
+    /// it reads must be bound where the program binds it. Pipelines that were made before stay.
+    ///
+    /// # Errors
+    /// wgpu rejects the module.
+    pub fn draw_with(&self, program: &Program, module: &Validated) -> Result<(), GpuError> {
+        self.shaders.get(program.hash(), || self.make_shader(program, module)).map(drop)
+    }
+
     /// One render pipeline.
     ///
     /// # Errors
@@ -174,13 +184,14 @@ impl Pipelines {
     }
 
     fn shader(&self, program: &Program) -> Result<Arc<wgpu::ShaderModule>, GpuError> {
-        self.shaders.get(program.hash(), || {
-            let module = program.validated().module().clone();
-            self.gpu.scoped("shader module", |device| {
-                device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                    label: Some(&program.reflection().pass),
-                    source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
-                })
+        self.shaders.get(program.hash(), || self.make_shader(program, program.validated()))
+    }
+
+    fn make_shader(&self, program: &Program, module: &Validated) -> Result<wgpu::ShaderModule, GpuError> {
+        self.gpu.scoped("shader module", |device| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(&program.reflection().pass),
+                source: wgpu::ShaderSource::Naga(Cow::Owned(module.module().clone())),
             })
         })
     }
