@@ -32,6 +32,8 @@
 //! # Ok::<(), shadewright::compiler::Report>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 pub use shadewright_compiler as compiler;
 pub use shadewright_modules as modules;
 pub use shadewright_runtime as runtime;

@@ -1,5 +1,7 @@
 //! The command `shadewright`. What it does is in `cli/`, one file a command; `spec/command.md` is its manual.
 
+#![forbid(unsafe_code)]
+
 mod cli;
 
 use std::process::ExitCode;

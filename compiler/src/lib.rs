@@ -60,6 +60,8 @@
 //! # Ok::<(), shadewright_compiler::Report>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 pub mod canonical;
 pub mod catalog;
 mod contracts;

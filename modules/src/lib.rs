@@ -17,6 +17,8 @@
 //! let mine = Overlay(vec![Arc::new(Folder::new("./shaders")), library()]);
 //! ```
 
+#![forbid(unsafe_code)]
+
 pub mod build;
 pub mod cases;
 mod embedded;

@@ -14,6 +14,8 @@
 //! Colours are linear Rec.709 in cd/m2 per channel, lengths in metres, right-handed with y up. The runtime knows no module by
 //! name, owns no window and prints nothing.
 
+#![forbid(unsafe_code)]
+
 pub mod frame;
 pub mod gpu;
 pub mod image;

@@ -50,10 +50,15 @@ pub struct Renderer {
 impl Renderer {
     /// A renderer that links from this library.
     pub fn new(gpu: &Gpu, catalog: Arc<Catalog>) -> Self {
+        Self::with_cache(gpu, catalog, None)
+    }
+
+    /// The same, with a driver's cache of compiled pipelines: see [`cache`](crate::gpu::cache).
+    pub fn with_cache(gpu: &Gpu, catalog: Arc<Catalog>, cache: Option<wgpu::PipelineCache>) -> Self {
         Self {
             gpu: gpu.clone(),
             programs: Arc::new(Programs::new(catalog)),
-            pipelines: Arc::new(Pipelines::new(gpu)),
+            pipelines: Arc::new(Pipelines::new(gpu, cache)),
             jobs: Jobs::default(),
             uploads: Uploads::default(),
             kept: Kept::new(),

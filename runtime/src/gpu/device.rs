@@ -15,7 +15,8 @@ const PATIENCE: Duration = Duration::from_secs(900);
 /// Features that are used where they are there.
 const WELCOME: wgpu::Features = wgpu::Features::FLOAT32_FILTERABLE
     .union(wgpu::Features::FLOAT32_BLENDABLE)
-    .union(wgpu::Features::TIMESTAMP_QUERY);
+    .union(wgpu::Features::TIMESTAMP_QUERY)
+    .union(wgpu::Features::PIPELINE_CACHE);
 
 /// What the device's callbacks leave for the next call to find.
 #[derive(Debug, Default)]

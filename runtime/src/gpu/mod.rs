@@ -1,5 +1,6 @@
 //! The GPU: its device, linked programs as pipelines, typed values as bytes, and `probe`.
 
+pub mod cache;
 mod device;
 mod error;
 mod kept;

@@ -90,16 +90,18 @@ impl<S> Key<S> {
 #[derive(Debug)]
 pub struct Pipelines {
     gpu: Gpu,
+    cache: Option<wgpu::PipelineCache>,
     shaders: Kept<u128, wgpu::ShaderModule>,
     render: Kept<Key<RenderState>, RenderPipeline>,
     compute: Kept<Key<String>, ComputePipeline>,
 }
 
 impl Pipelines {
-    /// An empty cache.
-    pub fn new(gpu: &Gpu) -> Self {
+    /// No pipelines yet. They are made with the driver's cache, where one is given: see [`super::cache`].
+    pub fn new(gpu: &Gpu, cache: Option<wgpu::PipelineCache>) -> Self {
         Self {
             gpu: gpu.clone(),
+            cache,
             shaders: Kept::new(),
             render: Kept::new(),
             compute: Kept::new(),
@@ -165,7 +167,7 @@ impl Pipelines {
                     module: &shader,
                     entry_point: Some(entry),
                     compilation_options: options(&constants),
-                    cache: None,
+                    cache: self.cache.as_ref(),
                 })
             })?;
             Ok(Pipeline {
@@ -273,7 +275,7 @@ impl Pipelines {
                     targets: if state.color.is_some() { &targets } else { &[] },
                 }),
                 multiview_mask: None,
-                cache: None,
+                cache: self.cache.as_ref(),
             })
         })?;
         Ok(Pipeline {
@@ -357,7 +359,7 @@ mod tests {
     /// Catches a pipeline made twice for one key, and one shared by two keys.
     #[test]
     fn equal_requests_share_one_pipeline() {
-        let pipelines = Pipelines::new(&gpu());
+        let pipelines = Pipelines::new(&gpu(), None);
         let (a, same) = (pass(FLAT), pass(&FLAT.replace("Color", "Named")));
         let other = pass(&FLAT.replace("0.75", "0.5"));
         let request = |program, state| RenderRequest {
@@ -383,7 +385,7 @@ mod tests {
     /// Catches wgpu's panic on an uncaptured error, and errors without a name.
     #[test]
     fn invalid_pipeline_is_a_typed_error() {
-        let pipelines = Pipelines::new(&gpu());
+        let pipelines = Pipelines::new(&gpu(), None);
         let wrong = pass(&FLAT.replace("color: vec4f", "color: vec4u").replace("vec4f(0.75)", "vec4u(1u)"));
         let request = RenderRequest {
             program: &wrong,
@@ -408,7 +410,7 @@ mod tests {
     /// Catches a vertex input bound to a mesh attribute of another type, which the driver would fill with garbage.
     #[test]
     fn vertex_input_of_another_type_is_refused() {
-        let pipelines = Pipelines::new(&gpu());
+        let pipelines = Pipelines::new(&gpu(), None);
         let wrong = pass(&FLAT.replace("@location(0) position", "@location(3) position"));
         let error = pipelines.render(&RenderRequest {
             program: &wrong,

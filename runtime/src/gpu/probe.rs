@@ -32,7 +32,7 @@ const MOST_ROWS: u64 = 1 << 18;
 pub fn probe(gpu: &Gpu, catalog: &Catalog, recipe: &Recipe, function: &str, inputs: &[Json]) -> Result<Json, RuntimeError> {
     let program = catalog.compile_probe(recipe, function)?;
     let names = Names::of(catalog, program.reflection());
-    let results = evaluate(&Pipelines::new(gpu), gpu, &program, &names, inputs)?;
+    let results = evaluate(&Pipelines::new(gpu, None), gpu, &program, &names, inputs)?;
     Ok(json!({"function": function, "device": gpu.name(), "results": results}))
 }
 
