@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 
 use super::{Category, Module, Variants};
 use crate::diagnostics::{Diagnostic, Report, codes};
-use crate::library::Library;
+use crate::library::{Library, unreadable};
 use crate::manifest::{check_category, check_module, parse_category, parse_module};
 
 /// What a library declares.
@@ -110,7 +110,5 @@ fn sorted(mut names: Vec<String>) -> Vec<String> {
 }
 
 pub fn read(library: &dyn Library, path: &str) -> Result<Option<String>, Report> {
-    library
-        .read(path)
-        .map_err(|why| Diagnostic::new(codes::UNREADABLE_FILE, format!("`{path}` cannot be read: {why}")).into())
+    library.read(path).map_err(|why| unreadable(path, &why))
 }

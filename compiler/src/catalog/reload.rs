@@ -108,6 +108,7 @@ impl Catalog {
             return Ok(false);
         };
         let path = format!("{0}/{1}/{1}.wgsl", module.category, module.name);
-        Ok(read(self.library.as_ref(), &path)?.as_ref() == Some(&unit.file.text))
+        // Not the text alone: an edit in another file, of which this one is made, moves its places.
+        Ok(self.library.file(&path)?.is_some_and(|file| file == unit.file))
     }
 }

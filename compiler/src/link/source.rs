@@ -276,7 +276,8 @@ impl<'p> Writer<'p> {
         self.edits.push((item.name_span.clone(), planned.name.as_str().into()));
         self.edits.extend(self.dead.drain(..).map(|range| (range, "".into())));
         // Infallible: writing to a string.
-        let _ = write!(out, "// {}:{}", unit.file.name, item.line);
+        let (file, line) = unit.file.line_of(item.span.start, item.line);
+        let _ = write!(out, "// {file}:{line}");
         for (number, &node) in home.instance.iter().flat_map(|&i| &plan.instances.list[i].nodes).enumerate() {
             out.push_str(if number == 0 { " at " } else { ", " });
             out.push_str(&plan.tree.nodes[node].path);

@@ -7,12 +7,12 @@ use std::sync::Arc;
 use naga::Handle;
 
 use super::{Body, Calls, Home, Names, Plan, Planned, Structs, bindings, live, names};
-use crate::catalog::Catalog;
+use crate::catalog::{Catalog, Variants};
 use crate::contracts::compute_entry;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::{Combine, PassDecl};
 use crate::parse::{Origin, Unit};
-use crate::resolve::{Instances, Place, Tree};
+use crate::resolve::{Instance, Instances, Place, Tree};
 use crate::upstream::guarded;
 
 /// Which entry points a plan starts from.
@@ -128,7 +128,15 @@ impl Reach<'_> {
         for index in 0..self.instances.list.len() {
             let instance = &self.instances.list[index];
             let node = &self.tree.nodes[instance.node];
-            let unit = self.catalog.unit(&node.module, &node.constants)?;
+            // Equal texts are one unit, whatever the catalog still keeps: linking goes by identity.
+            let equal = |before: &Instance| {
+                let other = &self.tree.nodes[before.node];
+                Arc::ptr_eq(&other.module, &node.module) && Variants::key(&other.constants) == Variants::key(&node.constants)
+            };
+            let unit = match self.instances.list[..index].iter().position(equal) {
+                Some(before) => Arc::clone(&self.homes[before].unit),
+                None => self.catalog.unit(&node.module, &node.constants)?,
+            };
             // What the compiler makes itself needs no telling apart.
             let prefix = if node.module.category.is_empty() {
                 String::new()

@@ -15,7 +15,7 @@ use crate::diagnostics::SourceFile;
 use crate::manifest::{Arity, Locator, Step, Typed, Value};
 
 pub use fill::{resolve, resolve_root};
-pub use instances::Instances;
+pub use instances::{Instance, Instances};
 pub use resources::check_resources;
 
 /// A step into a RON text, owned.
