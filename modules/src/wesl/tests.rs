@@ -207,9 +207,93 @@ fn places_are_the_authors() {
     }
 }
 
+/// Catches syntax that wesl writes in other words than the author, so that comments and places of its declaration would be lost: every file
+/// of the standard library, and what none of them has.
+#[test]
+fn no_syntax_is_taken_in_other_words() {
+    let all = "import super::tools::twice;
+diagnostic(off, derivative_uniformity);
+alias V = vec3<f32>; // alias
+override o: u32 = 3u; // override
+const_assert 1 < 2; // assert
+var<storage, read> a: array<atomic<u32>>; // storage
+var<private> p: mat2x2<f32> = mat2x2<f32>(1f, 0.5, 1e-3, 0x1p4); // private
+@diagnostic(off, derivative_uniformity) @compute @workgroup_size(8, o)
+fn f(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) i: u32) { // compute
+    var x = twice(1.0); // var
+    let q = &x;
+    *q += 1.0; x++; x -= -x; _ = ~i; // assign
+    switch i { case 0, 1u: { x = twice(x); } case 2: { } default { x = 2.0; } } // switch
+    switch (i) { case 3, default: { x = twice(x); } } // switch
+    for (var j = 0; j < 3; j++) { if (j == 1) { continue; } else if j == 2 { break; } else { x = 0.0; } } // for
+    while x < 2.0 { x = x * 2.0; } // while
+    loop { if !((x > 1.0 && x < 4.0) || x == 0.0) { break; } continuing { x = twice(x); break if x >= 3.0; } } // loop
+    const k = array<i32, 2>(1, 2); // const
+    if any(vec2<bool>(true, false)) { return; } // return
+    x = select(1.0, bitcast<f32>(((i << 2u) >> 1u) | (i & 3u) | (1u ^ 2u)), (a[0u].b.c % 2u) != 0u); // shifts
+    @if(fine) discard; // discard
+    @if(fine) x = 1.0; @elif(debug) x = 2.0; @elif(fine && !debug) x = 3.0; @else x = 4.0; // chain
+}
+fn g() -> @location(0) @interpolate(flat, either) vec4<f32> { { return vec4<f32>(twice(0.5)); } } // location
+struct S { @align(16) @size(32) x: f32, @builtin(position) @invariant y: vec4<f32> } // struct
+";
+    let made = resolved(grain().with(ROOT, all)).unwrap();
+    let comments = |text: &str| text.matches(" // ").count();
+    assert_eq!(comments(&made.text), comments(all), "{}", made.text);
+    assert!(made.text.contains("1f, 0.5, 1e-3, 0x1p4"), "{}", made.text);
+
+    let mut seen = 0;
+    for (path, text) in crate::Embedded.files().filter(|(path, _)| path.ends_with(".wgsl")) {
+        // Each function calls something imported, so that none is left as it is.
+        let calling = format!(
+            "import super::tools::twice;\n{}",
+            text.replace(") -> f32 {\n", ") -> f32 {\n    _ = twice(1.0);\n")
+        );
+        let made = resolved(grain().with(ROOT, &calling)).unwrap_or_else(|error| panic!("{path}\n{error}"));
+        let expected = calling
+            .replace("import super::tools::twice;\n", "")
+            .replace("twice(", "tools_twice(");
+        assert!(made.text.starts_with(&expected), "{path}\n{}", made.text);
+        seen += calling.matches("_ = twice").count();
+    }
+    assert!(seen > 20, "{seen}");
+}
+
+/// Catches a reload that keeps a module whose imported file was edited.
+#[test]
+fn an_edit_of_an_imported_file_is_seen() {
+    #[derive(Clone)]
+    struct Edited(Arc<std::sync::Mutex<Texts>>);
+    impl Library for Edited {
+        fn folders(&self, folder: &str) -> Vec<String> {
+            self.0.lock().unwrap().folders(folder)
+        }
+        fn read(&self, path: &str) -> Result<Option<String>, String> {
+            self.0.lock().unwrap().read(path)
+        }
+    }
+    let edited = Edited(Arc::new(std::sync::Mutex::new(dusty_texts(DUST))));
+    let both = Overlay(vec![Arc::new(Wesl(edited.clone())), library_of_modules()]);
+    let catalog = Catalog::load(Arc::new(both)).unwrap_or_else(|report| panic!("{report}"));
+    let recipe = Recipe::parse("r", "(module: \"dusty\")").unwrap();
+    let program = |catalog: &Catalog| catalog.compile_probe(&recipe, "brdf").unwrap_or_else(|report| panic!("{report}"));
+    let before = program(&catalog);
+    for (change, same) in [(format!("\n{DUST}"), true), (DUST.replace("0.0", "0.5"), false)] {
+        let text = dusty_texts(&change);
+        *edited.0.lock().unwrap() = text;
+        let again = catalog.reload().unwrap();
+        let after = program(&again);
+        // The first edit moves a line alone: nothing else changes, but the place does.
+        assert_eq!(after.hash() == before.hash(), same);
+        assert_ne!(after.wgsl(), before.wgsl());
+        // The module, and the compiler's own of the probe.
+        assert_eq!(again.parsed(), 2);
+    }
+}
+
 /// A module in WESL over the standard library.
-fn dusty(helper: &str) -> Catalog {
-    let library = Texts::default()
+fn dusty_texts(helper: &str) -> Texts {
+    Texts::default()
         .with(
             "brdf/dusty/module.ron",
             "(summary: \"Dust\", uses: [\"math\"], params: {\"k\": (type: F32, unit: \"1\", default: 1.4, range: (1.0, 4.0), doc: \"k\")})",
@@ -218,8 +302,11 @@ fn dusty(helper: &str) -> Catalog {
             "brdf/dusty/dusty.wesl",
             "import package::shared::dust::falloff;\n\n/// Minnaert.\nfn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {\n    return s.diffuse * INV_PI * falloff(dot(s.normal, l), params.k);\n}\n",
         )
-        .with("shared/dust.wesl", helper);
-    let both = Overlay(vec![Arc::new(Wesl(library)), library_of_modules()]);
+        .with("shared/dust.wesl", helper)
+}
+
+fn dusty(helper: &str) -> Catalog {
+    let both = Overlay(vec![Arc::new(Wesl(dusty_texts(helper))), library_of_modules()]);
     Catalog::load(Arc::new(both)).unwrap_or_else(|report| panic!("{report}"))
 }
 
