@@ -531,6 +531,28 @@ fn circles_and_depths_end() {
     assert!(resolved(grain().with(ROOT, &deeper)).unwrap_err().starts_with("error[SW0702]"));
 }
 
+/// Catches an order, or a choice among several errors, that comes from wesl's hash maps.
+#[test]
+fn equal_input_gives_equal_bytes() {
+    let root: String = (0..8)
+        .map(|i| format!("fn f{i}() -> f32 {{ return super::t{i}::g(); }}\n"))
+        .collect();
+    let library = |body: &str| {
+        let add = |library: Texts, i: i32| library.with(&format!("brdf/grain/t{i}.wesl"), &body.replace('I', &i.to_string()));
+        (0..8).fold(grain().with(ROOT, &root), add)
+    };
+    let good = library("fn g() -> f32 { return I.0; }");
+    let text = resolved(good.clone()).unwrap().text.clone();
+    assert!(text.find("fn t1_g()") < text.find("fn t5_g()"), "{text}");
+    let bad = library("fn h() -> f32 { return I.0; }");
+    let error = resolved(bad.clone()).unwrap_err();
+    assert!(error.contains("`package::brdf::grain::t0` has no declaration `g`"), "{error}");
+    for _ in 0..8 {
+        assert_eq!(resolved(good.clone()).unwrap().text, text);
+        assert_eq!(resolved(bad.clone()).unwrap_err(), error);
+    }
+}
+
 /// What a file loses and gets while it is being written.
 fn mutated(text: &'static str) -> impl Strategy<Value = String> {
     let pieces = prop::sample::select(vec![
