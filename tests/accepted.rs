@@ -6,19 +6,18 @@
 #![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod support;
+mod verdict;
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
 use indexmap::IndexMap;
-use naga::valid::{Capabilities, ValidationFlags, Validator};
 use shadewright::compiler::manifest::ResourceKind;
 use shadewright::compiler::reflect::{BindingType, Fill, Stage};
 use shadewright::compiler::{Catalog, Program, Recipe, Target, emit};
 use shadewright::runtime::scene::SceneFile;
 use support::{finish, good, shadewright};
+use verdict::{naga_takes, spirv_val, tint};
 
 static CATALOG: LazyLock<Catalog> =
     LazyLock::new(|| Catalog::load(shadewright::modules::library()).unwrap_or_else(|report| panic!("{report}")));
@@ -76,35 +75,6 @@ static PROGRAMS: LazyLock<Vec<(String, Program)>> = LazyLock::new(|| {
     all.into_values().collect()
 });
 
-/// Runs a program that judges a file; `None` where it is not installed, which is said on standard output.
-fn verdict(program: &str, arguments: &[&str], contents: &[u8]) -> Option<Result<(), String>> {
-    let folder = tempfile::tempdir().expect("a folder");
-    // The ending tells `tint` the language.
-    let file = folder.path().join(if program == "tint" { "shader.wgsl" } else { "shader.spv" });
-    std::fs::write(&file, contents).expect("written");
-    let ran = Command::new(program).args(arguments).arg(&file).stdout(Stdio::null()).output();
-    match ran {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            // Not `println`, which is held back from who does not ask for it.
-            let _ = writeln!(std::io::stdout(), "{program} is not installed: its verdict is missing");
-            None
-        }
-        Err(error) => panic!("{program}: {error}"),
-        Ok(ran) if ran.status.success() => Some(Ok(())),
-        Ok(ran) => Some(Err(String::from_utf8_lossy(&ran.stderr).into_owned())),
-    }
-}
-
-fn tint(wgsl: &str) -> Option<Result<(), String>> {
-    verdict("tint", &["--format", "wgsl"], wgsl.as_bytes())
-}
-
-fn naga_takes(wgsl: &str) -> Result<(), String> {
-    let module = naga::front::wgsl::parse_str(wgsl).map_err(|error| error.emit_to_string(wgsl))?;
-    let verdict = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module);
-    verdict.map(|_| ()).map_err(|error| error.emit_to_string(wgsl))
-}
-
 /// Catches a source form that is no WGSL: an item that is missing, written twice or bound twice, a reserved word, and a capability that WebGPU
 /// has not by itself.
 #[test]
@@ -134,7 +104,7 @@ fn tint_accepts_all_source() {
 fn spirv_val_accepts_all_spirv() {
     for (name, program) in PROGRAMS.iter() {
         let spirv = emit(program.validated(), Target::SpirV, None).unwrap_or_else(|report| panic!("{name}\n{report}"));
-        match verdict("spirv-val", &["--target-env", "vulkan1.1"], &spirv) {
+        match spirv_val(&spirv) {
             None => return,
             Some(verdict) => verdict.unwrap_or_else(|error| panic!("{name}\n{error}")),
         }

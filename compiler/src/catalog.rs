@@ -196,6 +196,11 @@ impl Catalog {
         Diagnostic::new(codes::UNKNOWN_MODULE, format!("there is no module `{name}`")).suggest(name, "modules", known)
     }
 
+    /// Text of a file of the library; `None` where there is none.
+    pub(crate) fn text(&self, path: &str) -> Result<Option<String>, Report> {
+        read(self.library.as_ref(), path)
+    }
+
     /// A category's interface, scanned.
     pub(crate) fn interface(&self, name: &str) -> Result<Arc<Interface>, Report> {
         if let Some(done) = lock(&self.interfaces).get(name) {
@@ -216,8 +221,7 @@ impl Catalog {
             }
         }
         contracts::named_functions(&interface, &used)?;
-        lock(&self.interfaces).insert(name.to_owned(), Arc::clone(&interface));
-        Ok(interface)
+        Ok(first(&self.interfaces, name, interface))
     }
 
     fn read_interface(&self, name: &str) -> Result<Interface, Report> {
@@ -267,8 +271,7 @@ impl Catalog {
         )?;
         contracts::interface_unit(&interface.category, &unit)?;
         let unit = Arc::new(unit);
-        lock(&self.interface_units).insert(name.to_owned(), Arc::clone(&unit));
-        Ok(unit)
+        Ok(first(&self.interface_units, name, unit))
     }
 
     /// A module, parsed with these constants.
@@ -288,8 +291,7 @@ impl Catalog {
             }
         };
         let unit = Arc::new(self.parse_module(module, file, constants)?);
-        module.variants.insert(key, Arc::clone(&unit));
-        Ok(unit)
+        Ok(module.variants.insert(key, unit))
     }
 
     /// Parses a module's text.
@@ -410,6 +412,12 @@ fn default_of(module: &Module, name: &str, param: &Param) -> Result<Typed, Repor
         let place = Place::new(&module.source).keys(&["params", name, "default"]);
         error.diagnostic(name, &module.source, place.span()).into()
     })
+}
+
+/// Keeps what was made, unless another thread was faster: whoever asks gets the one that was there first, since linking goes by
+/// identity.
+fn first<T>(kept: &Mutex<HashMap<String, Arc<T>>>, name: &str, made: Arc<T>) -> Arc<T> {
+    Arc::clone(lock(kept).entry(name.to_owned()).or_insert(made))
 }
 
 /// A panic while the lock was held can only have left a cache entry out: the maps are never half changed.

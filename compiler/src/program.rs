@@ -131,6 +131,25 @@ impl Catalog {
         self.finish(self.plan(recipe, pass)?)
     }
 
+    /// The root's own pass, and behind it every pass that must run before it, in their order.
+    ///
+    /// # Errors
+    /// As for [`Catalog::compile`].
+    pub fn compile_all(&self, recipe: &Recipe) -> Result<Vec<Program>, Report> {
+        let main = self.compile(recipe, "main")?;
+        let before: Vec<String> = main
+            .reflection()
+            .passes
+            .iter()
+            .map(|pass| format!("{}.{}", pass.instance, pass.name))
+            .collect();
+        let mut all = vec![main];
+        for pass in before {
+            all.push(self.compile(recipe, &pass)?);
+        }
+        Ok(all)
+    }
+
     /// The first half of [`Catalog::compile`]: everything that can be known before anything is written.
     ///
     /// # Errors

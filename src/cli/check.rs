@@ -1,4 +1,4 @@
-//! `check`: modules, recipes and scenes; everything that can be known to be wrong without a GPU.
+//! `check`: modules, recipes, spaces and scenes; everything that can be known to be wrong without a GPU.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use super::{Context, Format, input};
 /// Options of `check`.
 #[derive(Args)]
 pub struct Options {
-    /// Folders of modules, recipes (*.recipe.ron), scenes (*.scene.ron), or - for a recipe from standard input; all modules where nothing is said
+    /// Folders of modules, recipes (*.recipe.ron), spaces (*.space.ron), scenes (*.scene.ron), or - for a recipe from standard input; all modules where nothing is said
     paths: Vec<PathBuf>,
 }
 
@@ -27,6 +27,7 @@ enum Thing {
     /// `category/name`
     Module(String),
     Recipe(PathBuf),
+    Space(PathBuf),
     Scene(PathBuf),
 }
 
@@ -53,6 +54,7 @@ pub fn run(modules: &[PathBuf], format: Format, options: &Options) -> Result<(),
         let (kind, name) = match thing {
             Thing::Module(name) => ("module", name.clone()),
             Thing::Recipe(path) => ("recipe", path.display().to_string()),
+            Thing::Space(path) => ("space", path.display().to_string()),
             Thing::Scene(path) => ("scene", path.display().to_string()),
         };
         let result = check(&context, thing);
@@ -93,6 +95,8 @@ fn sort_out(path: &Path, folders: &mut Vec<PathBuf>, things: &mut BTreeSet<Thing
         let name = path.to_string_lossy();
         let thing = if name.ends_with(".scene.ron") {
             Thing::Scene
+        } else if name.ends_with(".space.ron") {
+            Thing::Space
         } else {
             Thing::Recipe
         };
@@ -150,6 +154,7 @@ fn check(context: &Context, thing: &Thing) -> Result<(), Failure> {
             cases(context, name)
         }
         Thing::Recipe(path) => tree(context, &Recipe::parse(&path.to_string_lossy(), &input::text(path)?)?),
+        Thing::Space(path) => super::permutations::check_space(context, path),
         Thing::Scene(path) => super::render::check(context, path),
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use serde_json::json;
-use shadewright::compiler::{self, Program, Target};
+use shadewright::compiler::{self, Program, Report, Target};
 
 use super::failure::Failure;
 use super::output::{Outputs, json};
@@ -38,7 +38,7 @@ pub struct Options {
 
 /// Languages that a shader is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Language {
+pub enum Language {
     /// The authors' own text, linked
     Wgsl,
     /// WGSL written from the linked IR
@@ -72,7 +72,7 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
         tree::freeze(&context.catalog, &mut recipe.root, typed)?;
     }
     let program = context.catalog.compile(&recipe, &options.pass)?;
-    let shader = write(&program, options)?;
+    let shader = shader(&program, options.target, options.entry.as_deref())?;
     let shader = match context.format {
         Format::Text => shader,
         Format::Json => format!("{}\n", describe(&program, options.target, &shader)?).into_bytes(),
@@ -85,9 +85,12 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
     outputs.commit()
 }
 
-fn write(program: &Program, options: &Options) -> Result<Vec<u8>, Failure> {
-    let entry = options.entry.as_deref();
-    let target = match options.target {
+/// A program in a language.
+///
+/// # Errors
+/// The language lacks something, or holds one entry point a file and none of several is named.
+pub fn shader(program: &Program, language: Language, entry: Option<&str>) -> Result<Vec<u8>, Report> {
+    let target = match language {
         Language::Wgsl => return Ok(program.wgsl().as_bytes().to_vec()),
         Language::WgslIr => Target::WgslFromIr,
         Language::Spirv => Target::SpirV,
@@ -95,7 +98,7 @@ fn write(program: &Program, options: &Options) -> Result<Vec<u8>, Failure> {
         Language::Hlsl => Target::Hlsl,
         Language::Msl => Target::Msl,
     };
-    Ok(compiler::emit(program.validated(), target, entry)?)
+    compiler::emit(program.validated(), target, entry)
 }
 
 fn describe(program: &Program, target: Language, shader: &[u8]) -> Result<String, Failure> {

@@ -24,6 +24,8 @@ pub enum Failure {
     NoGpu(String),
     /// The GPU refused what we made for it: status 70.
     Bug(String),
+    /// Somebody pressed Ctrl-C, and what was done till then is in order: status 130, as shells have it.
+    Interrupted(String),
     /// All has been said on standard output already: status 1.
     Said,
     /// Whoever reads standard output has seen enough: status 0.
@@ -67,6 +69,7 @@ impl Failure {
             Self::Usage(_) => 2,
             Self::NoGpu(_) => 3,
             Self::Bug(_) => BUG,
+            Self::Interrupted(_) => 130,
             Self::BrokenPipe => 0,
         }
     }
@@ -76,6 +79,7 @@ impl Failure {
         match self {
             Self::Input(report) => report.render(),
             Self::Message(text) | Self::Usage(text) | Self::NoGpu(text) => format!("error: {text}"),
+            Self::Interrupted(text) => format!("interrupted: {text}"),
             Self::Bug(text) => bug(text),
             Self::Said | Self::BrokenPipe => String::new(),
         }
@@ -89,7 +93,10 @@ impl Failure {
             (Self::Input(report), Format::Json) => {
                 complain(&json!({"status": self.status(), "diagnostics": report.to_json()}).to_string());
             }
-            (Self::Message(message) | Self::Usage(message) | Self::NoGpu(message) | Self::Bug(message), Format::Json) => {
+            (
+                Self::Message(message) | Self::Usage(message) | Self::NoGpu(message) | Self::Bug(message) | Self::Interrupted(message),
+                Format::Json,
+            ) => {
                 complain(&json!({"status": self.status(), "message": message}).to_string());
             }
         }
@@ -154,5 +161,6 @@ mod tests {
         assert_eq!(status_of(Format::Text, || Err(Failure::Usage("planted".into()))), 2);
         assert_eq!(status_of(Format::Json, || Err(Failure::NoGpu("planted".into()))), 3);
         assert_eq!(status_of(Format::Json, || Err(Failure::BrokenPipe)), 0);
+        assert_eq!(status_of(Format::Text, || Err(Failure::Interrupted("planted".into()))), 130);
     }
 }

@@ -42,16 +42,25 @@ pub fn text(path: &Path) -> Result<String, Failure> {
 /// # Errors
 /// The file cannot be read, or its text is no recipe.
 pub fn recipe(typed: &str) -> Result<Recipe, Failure> {
+    let (name, text) = tree(typed, "recipe")?;
+    Ok(Recipe::parse(&name, &text)?)
+}
+
+/// Name and text of a tree as typed; `kind` names one that stands in no file.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn tree(typed: &str, kind: &str) -> Result<(String, String), Failure> {
     if typed == "-" {
-        return Ok(Recipe::parse("standard input", &text(Path::new("-"))?)?);
+        return Ok(("standard input".to_owned(), text(Path::new("-"))?));
     }
     let inline = typed.trim_start().starts_with(['(', '"']);
     let path = Path::new(typed);
     if !inline && path.is_file() {
-        return Ok(Recipe::parse(typed, &text(path)?)?);
+        return Ok((typed.to_owned(), text(path)?));
     }
     if !inline && (Path::new(typed).extension().is_some() || path.is_absolute() || typed.starts_with('.')) {
         return Err(Failure::message(format!("{typed}: there is no such file")));
     }
-    Ok(Recipe::parse("recipe", typed)?)
+    Ok((kind.to_owned(), typed.to_owned()))
 }

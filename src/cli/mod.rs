@@ -1,5 +1,6 @@
 //! What can be typed, and which file does it.
 
+mod bindings;
 mod check;
 mod diff;
 mod emit;
@@ -7,8 +8,10 @@ pub mod failure;
 mod graph;
 mod input;
 mod list;
+mod needs;
 mod new;
 mod output;
+mod permutations;
 mod probe;
 mod render;
 mod show;
@@ -41,7 +44,7 @@ pub struct Arguments {
 
 const EXIT_STATUS: &str = "\
 A RECIPE is a file, an inline RON tree such as '(module: \"microfacet\", fill: {\"ndf\": \"ggx\"})', a module's name, or - for standard input.
-Exit status: 0 done, 1 the input is wrong, 2 usage, 3 no usable GPU, 70 a bug of ours.";
+Exit status: 0 done, 1 the input is wrong, 2 usage, 3 no usable GPU, 70 a bug of ours, 130 interrupted.";
 
 /// How results and errors are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -62,12 +65,16 @@ enum Command {
     Check(check::Options),
     /// Writes the shader of a recipe, and its binding layout
     Emit(emit::Options),
+    /// Writes Rust for a renderer of one's own: structs, bind groups, pipelines
+    Bindings(bindings::Options),
     /// Shows the tree of a recipe, defaults written out
     Graph(graph::Options),
     /// Says why a function, binding, parameter or struct is in the shader
     Why(why::Options),
     /// Says what changes from one recipe to another, and which choice did it
     Diff(diff::Options),
+    /// Counts, lists, checks or writes the permutations of a space
+    Permutations(permutations::Options),
     /// Draws a scene into a PNG (displayed) or EXR (linear, cd/m2) file
     Render(render::Options),
     /// Evaluates an interface function on the GPU over a table of inputs
@@ -81,7 +88,7 @@ pub struct Context {
     /// Standard library, with the folders of `--modules` over it.
     pub library: Arc<dyn compiler::Library>,
     /// Its manifests.
-    pub catalog: compiler::Catalog,
+    pub catalog: Arc<compiler::Catalog>,
     /// How to write.
     pub format: Format,
 }
@@ -102,7 +109,7 @@ impl Context {
         }
         layers.push(modules::library());
         let library: Arc<dyn compiler::Library> = Arc::new(Overlay(layers));
-        let catalog = compiler::Catalog::load(Arc::clone(&library))?;
+        let catalog = Arc::new(compiler::Catalog::load(Arc::clone(&library))?);
         Ok(Self { library, catalog, format })
     }
 }
@@ -120,9 +127,11 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::List(options) => list::run(&context(&arguments.modules)?, &options),
         Command::Show(options) => show::run(&context(&arguments.modules)?, &options),
         Command::Emit(options) => emit::run(&context(&arguments.modules)?, &options),
+        Command::Bindings(options) => bindings::run(&context(&arguments.modules)?, &options),
         Command::Graph(options) => graph::run(&context(&arguments.modules)?, &options),
         Command::Why(options) => why::run(&context(&arguments.modules)?, &options),
         Command::Diff(options) => diff::run(&context(&arguments.modules)?, &options),
+        Command::Permutations(options) => permutations::run(&context(&arguments.modules)?, &options),
         Command::Render(options) => render::run(context(&arguments.modules)?, &options),
         Command::Probe(options) => probe::run(&context(&arguments.modules)?, &options),
     }

@@ -43,12 +43,13 @@ impl Variants {
         lock(&self.0).values().cloned().collect()
     }
 
-    /// Keeps a unit.
-    pub fn insert(&self, key: Constants, unit: Arc<Unit>) {
+    /// Keeps a unit, unless another thread was faster: whoever asks gets the one that was there first, since linking goes by
+    /// identity.
+    pub fn insert(&self, key: Constants, unit: Arc<Unit>) -> Arc<Unit> {
         let mut kept = lock(&self.0);
-        if kept.len() >= limits::VARIANTS {
+        if kept.len() >= limits::VARIANTS && !kept.contains_key(&key) {
             kept.shift_remove_index(0);
         }
-        kept.insert(key, unit);
+        Arc::clone(kept.entry(key).or_insert(unit))
     }
 }

@@ -102,6 +102,14 @@ codes! {
     ASSET_UNSUPPORTED = "SW0904", "A file that a scene names uses something that is not taken.";
     BAD_INPUT_TABLE = "SW0905", "A table of inputs does not fit the function's arguments.";
     BAD_OVERRIDE_PATH = "SW0906", "A `--set` path that leads nowhere in the scene.";
+
+    BAD_CHOICE = "SW1001", "A choice that offers nothing, or whose bounds contradict one another or what it offers.";
+    BAD_VALUES = "SW1002", "A list or range of values that holds none, or too many, or whose ends or steps contradict one another.";
+    UNKNOWN_TAG = "SW1003", "A rule of a space names a tag that neither the library nor the space has.";
+    SPACE_TOO_LARGE = "SW1004", "A space with more alternatives than the limit.";
+    SPACE_TOO_TANGLED = "SW1005", "A space whose rules tie together too much to be counted.";
+    SPACE_UNCOUNTABLE = "SW1006", "A space with too many permutations to be numbered.";
+    SPACE_EMPTY = "SW1007", "A space without a legal permutation.";
 }
 
 #[cfg(test)]

@@ -50,7 +50,7 @@ fn arguments(plan: &Plan, planned: &Planned, constructor: &Constructor, dead: &m
         Some(Origin::Own) => Some(plan.homes[planned.home].first),
         _ => None,
     };
-    let Some(id) = declared.and_then(|home| plan.structs.named(home, name)) else {
+    let Some(id) = declared.and_then(|home| plan.structs.named(&plan.homes, home, name)) else {
         return;
     };
     let close = constructor.bounds.last().copied().unwrap_or_default();

@@ -239,7 +239,7 @@ impl<'p> Writer<'p> {
             interface: None,
             name: item.name.clone(),
         };
-        let declared = self.plan.structs.named(self.plan.homes[home].first, &item.name);
+        let declared = self.plan.structs.named(&self.plan.homes, self.plan.homes[home].first, &item.name);
         let Some(id) = declared.filter(|_| !unit.fixed_structs.contains(&key)) else {
             return;
         };

@@ -1,6 +1,7 @@
 //! One text, parsed and checked alone.
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -44,6 +45,8 @@ pub struct Unit {
     pub info: naga::valid::ModuleInfo,
     /// The category whose interface this unit is; `None` for a module's unit.
     pub interface: Option<String>,
+    /// Categories whose interfaces it names.
+    pub interfaces: BTreeSet<String>,
     /// Functions by name.
     pub functions: HashMap<String, Handle<naga::Function>>,
     /// Whether a function depends on more than its text: on slots, parameters, resources. By handle.
@@ -120,6 +123,7 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
         fixed_structs: HashSet::default(),
         words: HashSet::default(),
         words_filter: Filter::default(),
+        interfaces: BTreeSet::new(),
         facts: Vec::new(),
         cuts: Vec::new(),
         mentions: Vec::new(),
@@ -142,6 +146,7 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     unit.dependent = dependents(&unit);
     unit.words = words(&unit);
     unit.words.iter().for_each(|word| unit.words_filter.insert(word_hash(word)));
+    unit.interfaces = interfaces(&unit);
     unit.facts = facts(&unit);
     unit.cuts = functions_of(&unit)
         .map(|(f, item)| item.map_or_else(Cuts::default, |item| cuts(&unit, f, item)))
@@ -347,6 +352,15 @@ fn words(unit: &Unit) -> HashSet<String> {
         words.extend(mentioned.filter(|w| unit.origin(w).is_none()).map(str::to_owned));
     }
     words
+}
+
+fn interfaces(unit: &Unit) -> BTreeSet<String> {
+    let named = unit.composed.names.values().filter_map(|origin| match origin {
+        Origin::Interface(category) | Origin::Offered { interface: category, .. } => Some(category),
+        _ => None,
+    });
+    let slots = unit.needs.slots.iter().map(|slot| &slot.interface);
+    named.chain(slots).chain(&unit.needs.implements).cloned().collect()
 }
 
 /// Functions by handle, then entry points, with their items in the author's text.

@@ -7,7 +7,7 @@ use naga::{AddressSpace, GlobalVariable, Handle};
 use super::Plan;
 use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, codes};
-use crate::manifest::{Resource, ResourceKind};
+use crate::manifest::Resource;
 use crate::parse::Origin;
 
 /// Names of the bind groups' parameter blocks, by group: frame, lights and shadows, material, pass.
@@ -23,7 +23,7 @@ pub struct PlannedGlobal {
     /// Group and binding; `None` for private and workgroup variables.
     pub binding: Option<(u32, u32)>,
     /// What its manifest says of it; nothing for `instances` and for private and workgroup variables.
-    pub declared: Option<ResourceKind>,
+    pub declared: Option<Resource>,
 }
 
 /// The uniform parameters of one group.
@@ -174,7 +174,7 @@ fn declared<'c>(catalog: &'c Catalog, plan: &'c Plan, home: usize, name: &str) -
 }
 
 /// The bind group of a resource, and what its manifest says of it.
-fn place(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVariable>) -> Result<(u32, Option<ResourceKind>), Report> {
+fn place(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVariable>) -> Result<(u32, Option<Resource>), Report> {
     let unit = &plan.homes[home].unit;
     let name = unit.ir.global_variables[handle].name.as_deref().unwrap_or_default();
     let category = match plan.homes[home].instance {
@@ -195,5 +195,5 @@ fn place(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVaria
         .note("the host must know how to fill it: add it to `resources` of the manifest beside this file")
         .into());
     };
-    Ok((resource.group.unwrap_or(group), Some(resource.kind.clone())))
+    Ok((resource.group.unwrap_or(group), Some(resource.clone())))
 }

@@ -1,17 +1,18 @@
 //! From the entry points to every function that is called, across modules.
 
 use rustc_hash::FxHashMap as HashMap;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use naga::Handle;
 
 use super::{Body, Calls, Home, Names, Plan, Planned, Structs, bindings, live, names};
-use crate::catalog::Catalog;
+use crate::catalog::{Catalog, Variants};
 use crate::contracts::compute_entry;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::{Combine, PassDecl};
 use crate::parse::{Origin, Unit};
-use crate::resolve::{Instances, Place, Tree};
+use crate::resolve::{Instance, Instances, Place, Tree};
 use crate::upstream::guarded;
 
 /// Which entry points a plan starts from.
@@ -127,7 +128,15 @@ impl Reach<'_> {
         for index in 0..self.instances.list.len() {
             let instance = &self.instances.list[index];
             let node = &self.tree.nodes[instance.node];
-            let unit = self.catalog.unit(&node.module, &node.constants)?;
+            // Equal texts are one unit, whatever the catalog still keeps: linking goes by identity.
+            let equal = |before: &Instance| {
+                let other = &self.tree.nodes[before.node];
+                Arc::ptr_eq(&other.module, &node.module) && Variants::key(&other.constants) == Variants::key(&node.constants)
+            };
+            let unit = match self.instances.list[..index].iter().position(equal) {
+                Some(before) => Arc::clone(&self.homes[before].unit),
+                None => self.catalog.unit(&node.module, &node.constants)?,
+            };
             // What the compiler makes itself needs no telling apart.
             let prefix = if node.module.category.is_empty() {
                 String::new()
@@ -137,24 +146,8 @@ impl Reach<'_> {
             self.push_home(unit, Some(index), prefix);
         }
         // Every interface that a unit names.
-        let mut names: Vec<String> = Vec::new();
-        for home in &self.homes {
-            let mut own: Vec<&String> = home
-                .unit
-                .composed
-                .names
-                .values()
-                .filter_map(|o| match o {
-                    Origin::Interface(category) | Origin::Offered { interface: category, .. } => Some(category),
-                    _ => None,
-                })
-                .collect();
-            own.extend(home.unit.needs.slots.iter().map(|s| &s.interface));
-            own.extend(&home.unit.needs.implements);
-            names.extend(own.into_iter().cloned());
-        }
-        names.sort();
-        names.dedup();
+        let named: BTreeSet<&String> = self.homes.iter().flat_map(|home| &home.unit.interfaces).collect();
+        let mut names: Vec<String> = named.into_iter().cloned().collect();
         let mut next = 0;
         while next < names.len() {
             let name = names[next].clone();

@@ -58,7 +58,7 @@ fn bindings(plan: &Plan, validated: &Validated) -> Vec<Binding> {
     let Ok(layouts) = Layouts::new(module) else { return Vec::new() };
     let mut by_place = HashMap::new();
     for block in &plan.blocks {
-        by_place.insert((block.group, block.binding), Fill::Params);
+        by_place.insert((block.group, block.binding), (Fill::Params, String::new()));
     }
     for global in &plan.globals {
         let Some(place) = global.binding else { continue };
@@ -66,14 +66,18 @@ fn bindings(plan: &Plan, validated: &Validated) -> Vec<Binding> {
         let name = unit.ir.global_variables[global.handle].name.clone().unwrap_or_default();
         let instance = plan.homes[global.home].instance.map(|i| plan.instances.list[i].name.clone());
         let fill = match (&instance, &global.declared) {
-            (Some(instance), _) if unit.instances == Some(global.handle) => Fill::Instances {
-                instance: instance.clone(),
-            },
-            (_, Some(kind)) => Fill::Resource {
-                instance,
-                resource: name,
-                declared: kind.clone(),
-            },
+            (Some(instance), _) if unit.instances == Some(global.handle) => {
+                let instance = instance.clone();
+                (Fill::Instances { instance }, String::new())
+            }
+            (_, Some(resource)) => {
+                let fill = Fill::Resource {
+                    instance,
+                    resource: name,
+                    declared: resource.kind.clone(),
+                };
+                (fill, resource.doc.clone())
+            }
             (_, None) => continue,
         };
         by_place.insert(place, fill);
@@ -83,13 +87,15 @@ fn bindings(plan: &Plan, validated: &Validated) -> Vec<Binding> {
         .iter()
         .filter_map(|(handle, global)| {
             let place = global.binding.as_ref()?;
+            let (fill, doc) = by_place.get(&(place.group, place.binding))?.clone();
             Some(Binding {
                 group: place.group,
                 binding: place.binding,
                 name: global.name.clone().unwrap_or_default(),
                 stages: stages_using(module, info, handle),
                 ty: binding_type(module, info, &layouts, handle)?,
-                fill: by_place.get(&(place.group, place.binding))?.clone(),
+                fill,
+                doc,
             })
         })
         .collect();

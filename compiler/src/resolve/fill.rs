@@ -51,12 +51,7 @@ impl Resolver<'_> {
         depth: usize,
     ) -> Result<usize, Report> {
         if depth > limits::TREE_DEPTH {
-            return Err(Diagnostic::new(
-                codes::TREE_TOO_DEEP,
-                format!("the tree is deeper than {} slots", limits::TREE_DEPTH),
-            )
-            .at(&place.file, place.span(), "here it goes too deep")
-            .into());
+            return Err(too_deep(&place));
         }
         if self.tree.nodes.len() >= limits::INSTANCES {
             return Err(Diagnostic::new(
@@ -71,13 +66,7 @@ impl Resolver<'_> {
         if let Some(label) = &node.label
             && !is_identifier(label)
         {
-            return Err(Diagnostic::new(codes::BAD_LABEL, format!("the label `{label}` is no identifier"))
-                .at(
-                    &place.file,
-                    place.keys(&["label"]).span(),
-                    "letters, digits and underscores, not a digit first",
-                )
-                .into());
+            return Err(bad_label(label, &place));
         }
         self.tree.nodes.push(TreeNode {
             module: Arc::clone(&module),
@@ -88,7 +77,7 @@ impl Resolver<'_> {
             label: node.label.clone(),
             place: place.clone(),
         });
-        self.unknown_slots(&module, node, &place)?;
+        unknown_slots(&module, node.fill.keys(), &place)?;
         for (name, slot) in &module.manifest.slots {
             let nodes = self.slot(index, &module, node, (name, slot), &path, &place, depth)?;
             let filled = Filled {
@@ -99,22 +88,6 @@ impl Resolver<'_> {
             self.tree.nodes[index].fills.insert(name.clone(), filled);
         }
         Ok(index)
-    }
-
-    fn unknown_slots(&self, module: &Module, node: &Node, place: &Place) -> Result<(), Report> {
-        for name in node.fill.keys() {
-            if !module.manifest.slots.contains_key(name) {
-                let known: Vec<&str> = module.manifest.slots.keys().map(String::as_str).collect();
-                let span = place.keys(&["fill", name]).key_span();
-                return Err(
-                    Diagnostic::new(codes::UNKNOWN_SLOT, format!("`{}` has no slot `{name}`", module.name))
-                        .at(&place.file, span, "no such slot")
-                        .suggest(name, "slots", known)
-                        .into(),
-                );
-            }
-        }
-        Ok(())
     }
 
     #[allow(clippy::too_many_arguments)]
@@ -135,28 +108,13 @@ impl Resolver<'_> {
             (Some(filling), _) => (filling, place.keys(&["fill", name])),
             (None, Some(default)) => {
                 let at = Place::new(&module.source).keys(&["slots", name, "default"]);
-                if let Some(first) = self.defaults.iter().position(|m| m.name == module.name) {
-                    let circle = self.defaults[first..].iter().chain([module]);
-                    let circle: Vec<&str> = circle.map(|m| m.name.as_str()).collect();
-                    return Err(
-                        Diagnostic::new(codes::CYCLIC_TREE, format!("the defaults of `{}` lead back to itself", module.name))
-                            .at(&at.file, at.span(), "this default is part of the circle")
-                            .note(format!("the circle is {}", circle.join(" -> ")))
-                            .note("fill the slot in the recipe, or take one of the defaults away")
-                            .into(),
-                    );
+                if let Some(circle) = circle(&self.defaults, module, &at) {
+                    return Err(circle);
                 }
                 (default, at)
             }
             (None, None) if slot.arity == Arity::Single => {
-                let fits = self.catalog.fits(&slot.interface);
-                return Err(Diagnostic::new(
-                    codes::MISSING_FILLING,
-                    format!("nothing fills the slot `{name}` of `{}`", module.name),
-                )
-                .at(&place.file, place.span(), format!("`{name}` is missing here"))
-                .note(format!("modules of `{}` fit: {}", slot.interface, list_or_none(&fits)))
-                .into());
+                return Err(missing_filling(self.catalog, module, name, slot, place));
             }
             (None, None) => return Ok(Vec::new()),
         };
@@ -171,20 +129,7 @@ impl Resolver<'_> {
             Arity::List => 0..=limits::LIST_LENGTH,
         };
         if !takes.contains(&nodes.len()) {
-            return Err(Diagnostic::new(
-                codes::TOO_MANY_FILLINGS,
-                format!("{} modules in the slot `{name}` of `{}`", nodes.len(), module.name),
-            )
-            .at(
-                &at.file,
-                at.span(),
-                match slot.arity {
-                    Arity::Single => "it takes exactly one".to_owned(),
-                    Arity::Optional => "it takes at most one".to_owned(),
-                    Arity::List => format!("it takes at most {}", limits::LIST_LENGTH),
-                },
-            )
-            .into());
+            return Err(wrong_number(nodes.len(), (name, slot.arity), module, &at));
         }
         let is_default = by_recipe.is_none();
         if is_default {
@@ -210,14 +155,96 @@ impl Resolver<'_> {
     }
 }
 
+/// A tree with more slots above one another than there may be.
+pub fn too_deep(place: &Place) -> Report {
+    Diagnostic::new(
+        codes::TREE_TOO_DEEP,
+        format!("the tree is deeper than {} slots", limits::TREE_DEPTH),
+    )
+    .at(&place.file, place.span(), "here it goes too deep")
+    .into()
+}
+
+/// A label that no name can be made of.
+pub fn bad_label(label: &str, place: &Place) -> Report {
+    Diagnostic::new(codes::BAD_LABEL, format!("the label `{label}` is no identifier"))
+        .at(
+            &place.file,
+            place.keys(&["label"]).span(),
+            "letters, digits and underscores, not a digit first",
+        )
+        .into()
+}
+
+/// Finds names that are no slots of a module.
+pub fn unknown_slots<'a>(module: &Module, names: impl IntoIterator<Item = &'a String>, place: &Place) -> Result<(), Report> {
+    for name in names {
+        if !module.manifest.slots.contains_key(name) {
+            let known: Vec<&str> = module.manifest.slots.keys().map(String::as_str).collect();
+            let span = place.keys(&["fill", name]).key_span();
+            return Err(
+                Diagnostic::new(codes::UNKNOWN_SLOT, format!("`{}` has no slot `{name}`", module.name))
+                    .at(&place.file, span, "no such slot")
+                    .suggest(name, "slots", known)
+                    .into(),
+            );
+        }
+    }
+    Ok(())
+}
+
+/// The error about a module whose default leads back to it, if it does. `defaults` are the modules whose defaults are being expanded.
+pub fn circle(defaults: &[Arc<Module>], module: &Arc<Module>, at: &Place) -> Option<Report> {
+    let first = defaults.iter().position(|m| m.name == module.name)?;
+    let circle = defaults[first..].iter().chain([module]);
+    let circle: Vec<&str> = circle.map(|m| m.name.as_str()).collect();
+    Some(
+        Diagnostic::new(codes::CYCLIC_TREE, format!("the defaults of `{}` lead back to itself", module.name))
+            .at(&at.file, at.span(), "this default is part of the circle")
+            .note(format!("the circle is {}", circle.join(" -> ")))
+            .note("fill the slot in the recipe, or take one of the defaults away")
+            .into(),
+    )
+}
+
+/// A slot that must be filled and is not.
+pub fn missing_filling(catalog: &Catalog, module: &Module, name: &str, slot: &Slot, place: &Place) -> Report {
+    let fits = catalog.fits(&slot.interface);
+    Diagnostic::new(
+        codes::MISSING_FILLING,
+        format!("nothing fills the slot `{name}` of `{}`", module.name),
+    )
+    .at(&place.file, place.span(), format!("`{name}` is missing here"))
+    .note(format!("modules of `{}` fit: {}", slot.interface, list_or_none(&fits)))
+    .into()
+}
+
+/// A slot with a number of modules that it does not take.
+pub fn wrong_number(number: usize, (name, arity): (&str, Arity), module: &Module, at: &Place) -> Report {
+    Diagnostic::new(
+        codes::TOO_MANY_FILLINGS,
+        format!("{number} modules in the slot `{name}` of `{}`", module.name),
+    )
+    .at(
+        &at.file,
+        at.span(),
+        match arity {
+            Arity::Single => "it takes exactly one".to_owned(),
+            Arity::Optional => "it takes at most one".to_owned(),
+            Arity::List => format!("it takes at most {}", limits::LIST_LENGTH),
+        },
+    )
+    .into()
+}
+
 fn list_or_none(names: &[String]) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-/// Parameters that are constants in this node.
-fn constants(module: &Module, node: &Node, place: &Place) -> Result<IndexMap<String, (Value, Typed)>, Report> {
+/// Finds names that are no parameters of a module.
+pub fn unknown_params<'a>(module: &Module, names: impl IntoIterator<Item = &'a String>, place: &Place) -> Result<(), Report> {
     let manifest = &module.manifest;
-    for name in node.freeze.keys() {
+    for name in names {
         if !manifest.params.contains_key(name) {
             let at = place.keys(&["freeze", name]);
             if manifest.instances.contains_key(name) {
@@ -236,6 +263,13 @@ fn constants(module: &Module, node: &Node, place: &Place) -> Result<IndexMap<Str
             );
         }
     }
+    Ok(())
+}
+
+/// Parameters that are constants in this node.
+fn constants(module: &Module, node: &Node, place: &Place) -> Result<IndexMap<String, (Value, Typed)>, Report> {
+    unknown_params(module, node.freeze.keys(), place)?;
+    let manifest = &module.manifest;
     let mut constants = IndexMap::new();
     for (name, param) in &manifest.params {
         let (value, at) = match node.freeze.get(name) {
@@ -249,7 +283,8 @@ fn constants(module: &Module, node: &Node, place: &Place) -> Result<IndexMap<Str
     Ok(constants)
 }
 
-fn is_identifier(text: &str) -> bool {
+/// Whether a label can be part of a name.
+pub fn is_identifier(text: &str) -> bool {
     let mut letters = text.chars();
     letters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_') && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }

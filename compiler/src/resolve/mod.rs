@@ -1,9 +1,9 @@
 //! A recipe and a catalog to a tree of modules, with every slot filled and every rule kept.
 
-mod fill;
+pub mod fill;
 mod instances;
 mod resources;
-mod rules;
+pub mod rules;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::diagnostics::SourceFile;
 use crate::manifest::{Arity, Locator, Step, Typed, Value};
 
 pub use fill::{resolve, resolve_root};
-pub use instances::Instances;
+pub use instances::{Instance, Instances};
 pub use resources::check_resources;
 
 /// A step into a RON text, owned.

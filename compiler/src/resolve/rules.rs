@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::{Tree, TreeNode};
+use crate::catalog::Module;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::{Among, Rule};
 
@@ -67,7 +68,7 @@ fn check_rule(tree: &Tree, index: usize, node: &TreeNode, rule: &Rule) -> Result
             Among::Children => other != index && is_below(tree, other, index),
             Among::Tree => other != index,
         };
-        there && has_tag(candidate, tag)
+        there && has_tag(&candidate.module, tag)
     });
     let name = &node.module.name;
     let place = match among {
@@ -109,8 +110,8 @@ fn is_below(tree: &Tree, mut node: usize, ancestor: usize) -> bool {
     false
 }
 
-fn has_tag(node: &TreeNode, tag: &str) -> bool {
-    let module = &node.module;
+/// Whether rules mean a module by this word.
+pub fn has_tag(module: &Module, tag: &str) -> bool {
     module.name == tag
         || module.category == tag
         || module.manifest.properties.iter().any(|p| p == tag)

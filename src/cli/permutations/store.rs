@@ -1,0 +1,406 @@
+//! `permutations --emit`: a folder with each distinct program once, and a manifest that says which permutation has which.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::hash::Hasher;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+use serde_json::Value as Json;
+use shadewright::compiler::space::{Chosen, Permutation, Space, Work, compile_all, fingerprint};
+use shadewright::compiler::{Program, Report};
+use siphasher::sip128::{Hasher128, SipHasher13};
+
+use super::super::emit::{Language, shader};
+use super::super::failure::Failure;
+use super::super::output::{Outputs, json, say, say_json};
+use super::super::{Context, Format};
+use super::watch::Watch;
+use super::{CHUNK, Options, Tally, index, sampled};
+
+/// Version of the manifest's form.
+const VERSION: u32 = 1;
+const MANIFEST: &str = "manifest.json";
+/// How long work may go on before what is done is noted in the manifest.
+const NOTE: Duration = Duration::from_secs(2);
+
+/// `manifest.json`.
+#[derive(Debug, Serialize, Deserialize)]
+struct Manifest {
+    /// Of this form.
+    version: u32,
+    /// Whether all that was asked for is here.
+    complete: bool,
+    /// Hash of the space's text.
+    space: String,
+    /// Hash of the library's texts and of the compiler's version.
+    library: String,
+    target: String,
+    pass: String,
+    sample: String,
+    /// Programs, distinct ones among them, and their ratio.
+    programs: usize,
+    distinct: usize,
+    ratio: f64,
+    /// In the order of the sample.
+    permutations: Vec<Entry>,
+    /// Hash of each file's bytes.
+    files: BTreeMap<String, String>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Entry {
+    index: Option<String>,
+    choices: Vec<Chosen>,
+    recipe: String,
+    programs: Vec<Written>,
+}
+
+/// A pass of a permutation.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Written {
+    pass: String,
+    /// Canonical hash; none where it does not compile.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    hash: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    files: Vec<String>,
+    /// Why it does not compile.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    diagnostics: Option<Json>,
+}
+
+/// What a thread made of a pass: its hash and, unless it is known to be there, its files.
+struct Made {
+    pass: String,
+    result: Result<(String, Vec<(String, Vec<u8>)>), Report>,
+}
+
+/// # Errors
+/// The folder cannot be written to or holds another manifest, or permutations do not compile.
+pub fn emit(context: &Context, space: &Space, options: &Options, folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| Failure::message(format!("{}: {error}", folder.display())))?;
+    let mut manifest = Manifest {
+        version: VERSION,
+        complete: false,
+        space: digest(space.source().text.as_bytes()),
+        library: format!("{:032x}", fingerprint(context.library.as_ref())?),
+        target: options
+            .target
+            .to_possible_value()
+            .map_or_else(String::new, |value| value.get_name().to_owned()),
+        pass: options.pass.clone(),
+        sample: match options.sample {
+            super::Sample::All => "all".to_owned(),
+            super::Sample::Pairwise => "pairwise".to_owned(),
+            super::Sample::Random(number) => format!("random:{number} seed {}", options.seed),
+        },
+        programs: 0,
+        distinct: 0,
+        ratio: 1.0,
+        permutations: Vec::new(),
+        files: BTreeMap::new(),
+    };
+    let done = earlier(folder, &manifest)?;
+    let drawn = sampled(space, options)?;
+    let mut writer = Writer {
+        folder,
+        language: options.target,
+        tally: Tally::default(),
+        known: BTreeMap::new(),
+        reused: 0,
+        noted: Instant::now(),
+    };
+    let watch = Watch::new(drawn.number);
+    let mut iter = drawn.iter;
+    let mut interrupted = false;
+    while !interrupted {
+        let chunk: Vec<Permutation> = iter.by_ref().take(CHUNK).collect();
+        if chunk.is_empty() {
+            break;
+        }
+        interrupted = !writer.chunk(context, options, &watch, &done, &chunk, &mut manifest)?;
+    }
+    watch.finish();
+    manifest.complete = !interrupted;
+    writer.note(&mut manifest, Outputs::default())?;
+    if interrupted {
+        let text = format!(
+            "{} of {} permutations are in {}; the same command goes on",
+            writer.tally.permutations,
+            drawn.number,
+            folder.display()
+        );
+        return Err(Failure::Interrupted(text));
+    }
+    writer.say(context.format, &manifest)
+}
+
+struct Writer<'a> {
+    folder: &'a Path,
+    language: Language,
+    tally: Tally,
+    /// Files of each program that is in the folder.
+    known: BTreeMap<String, Vec<String>>,
+    /// Permutations that were there already.
+    reused: usize,
+    noted: Instant,
+}
+
+impl Writer<'_> {
+    /// Compiles and writes some permutations. `false` where Ctrl-C was pressed; then those before are written.
+    fn chunk(
+        &mut self,
+        context: &Context,
+        options: &Options,
+        watch: &Watch,
+        done: &Earlier,
+        chunk: &[Permutation],
+        manifest: &mut Manifest,
+    ) -> Result<bool, Failure> {
+        let fresh: Vec<Permutation> = chunk
+            .iter()
+            .filter(|p| !done.entries.contains_key(&p.recipe.source.text))
+            .cloned()
+            .collect();
+        let work = Work {
+            passes: options.passes(),
+            threads: options.threads,
+            cancel: watch.cancel(),
+            progress: &|_| watch.step(),
+        };
+        let known: BTreeSet<&String> = self.known.keys().collect();
+        let language = self.language;
+        let mut made = compile_all(&context.catalog, &fresh, &work, |_, compiled| {
+            let make = |(pass, result): (String, Result<Program, Report>)| Made {
+                pass,
+                result: result.and_then(|program| {
+                    let hash = program.reflection().hash.clone();
+                    let files = if known.contains(&hash) {
+                        Vec::new()
+                    } else {
+                        files(&program, language)?
+                    };
+                    Ok((hash, files))
+                }),
+            };
+            compiled.into_iter().map(make).collect::<Vec<_>>()
+        })
+        .into_iter();
+        let mut outputs = Outputs::default();
+        for permutation in chunk {
+            let programs = match done.entries.get(&permutation.recipe.source.text) {
+                Some(entry) => {
+                    self.reused += 1;
+                    watch.step();
+                    self.reuse(entry, &done.files, manifest)
+                }
+                None => match made.next().flatten() {
+                    Some(made) => self.write(permutation, made, manifest, &mut outputs)?,
+                    None => {
+                        outputs.commit()?;
+                        return Ok(false);
+                    }
+                },
+            };
+            self.tally.permutations += 1;
+            manifest.permutations.push(Entry {
+                index: index(permutation),
+                choices: permutation.choices.clone(),
+                recipe: permutation.recipe.source.text.clone(),
+                programs,
+            });
+        }
+        if self.noted.elapsed() > NOTE {
+            self.note(manifest, outputs)?;
+        } else {
+            outputs.commit()?;
+        }
+        Ok(true)
+    }
+
+    fn reuse(&mut self, entry: &Entry, files: &BTreeMap<String, String>, manifest: &mut Manifest) -> Vec<Written> {
+        for program in &entry.programs {
+            if let Some(hash) = &program.hash {
+                self.count(hash);
+                self.known.entry(hash.clone()).or_insert_with(|| program.files.clone());
+            }
+            for name in &program.files {
+                if let Some(digest) = files.get(name) {
+                    manifest.files.insert(name.clone(), digest.clone());
+                }
+            }
+        }
+        entry.programs.clone()
+    }
+
+    fn write(
+        &mut self,
+        permutation: &Permutation,
+        made: Vec<Made>,
+        manifest: &mut Manifest,
+        outputs: &mut Outputs,
+    ) -> Result<Vec<Written>, Failure> {
+        let mut programs = Vec::new();
+        for Made { pass, result } in made {
+            let (hash, files) = match result {
+                Ok(made) => made,
+                Err(report) => {
+                    self.tally.fail(permutation, &pass, &report);
+                    programs.push(Written {
+                        pass,
+                        hash: None,
+                        files: Vec::new(),
+                        diagnostics: Some(report.to_json()),
+                    });
+                    continue;
+                }
+            };
+            self.count(&hash);
+            if !self.known.contains_key(&hash) {
+                let mut names = Vec::new();
+                for (name, bytes) in files {
+                    let path = self.folder.join(&name);
+                    let digest = digest(&bytes);
+                    // Left there by a run that could not note it: renaming an equal file over it would only change its time.
+                    if digest_of(&path).as_ref() != Some(&digest) {
+                        outputs.stage(&path, &bytes)?;
+                    }
+                    manifest.files.insert(name.clone(), digest);
+                    names.push(name);
+                }
+                self.known.insert(hash.clone(), names);
+            }
+            programs.push(Written {
+                pass,
+                files: self.known.get(&hash).cloned().unwrap_or_default(),
+                hash: Some(hash),
+                diagnostics: None,
+            });
+        }
+        Ok(programs)
+    }
+
+    fn count(&mut self, hash: &str) {
+        self.tally.programs += 1;
+        // A hash of ours is always hexadecimal.
+        self.tally.distinct.insert(u128::from_str_radix(hash, 16).unwrap_or_default());
+    }
+
+    /// Puts files in their places, and the manifest that names them last.
+    fn note(&mut self, manifest: &mut Manifest, mut outputs: Outputs) -> Result<(), Failure> {
+        manifest.programs = self.tally.programs;
+        manifest.distinct = self.tally.distinct.len();
+        manifest.ratio = self.tally.ratio();
+        outputs.stage(&self.folder.join(MANIFEST), format!("{}\n", json(manifest)?).as_bytes())?;
+        outputs.commit()?;
+        self.noted = Instant::now();
+        Ok(())
+    }
+
+    fn say(self, format: Format, manifest: &Manifest) -> Result<(), Failure> {
+        let failed = self.tally.failed.is_empty();
+        match format {
+            Format::Json => say_json(&serde_json::json!({
+                "permutations": self.tally.permutations.to_string(),
+                "programs": manifest.programs,
+                "distinct": manifest.distinct,
+                "ratio": manifest.ratio,
+                "kept": self.reused,
+                "files": manifest.files.len(),
+                "failed": self.tally.failed,
+            }))?,
+            Format::Text => {
+                for text in &self.tally.texts {
+                    say(text)?;
+                }
+                let kept = match self.reused {
+                    0 => String::new(),
+                    kept => format!("; {kept} permutations were there already"),
+                };
+                say(&format!(
+                    "{}, {} files in {}{kept}",
+                    self.tally.text(),
+                    manifest.files.len(),
+                    self.folder.display()
+                ))?;
+            }
+        }
+        if failed { Ok(()) } else { Err(Failure::Said) }
+    }
+}
+
+/// The files of a program, named by its hash.
+fn files(program: &Program, language: Language) -> Result<Vec<(String, Vec<u8>)>, Report> {
+    let hash = &program.reflection().hash;
+    let ending = match language {
+        Language::Wgsl | Language::WgslIr => "wgsl",
+        Language::Spirv => "spv",
+        Language::Hlsl => "hlsl",
+        Language::Msl => "metal",
+        // One entry point a file.
+        Language::Glsl => {
+            let entries = program.reflection().entry_points.iter();
+            let file = |name: &String| Ok((format!("{hash}.{name}.glsl"), shader(program, language, Some(name))?));
+            return entries.map(|entry| file(&entry.name)).collect();
+        }
+    };
+    Ok(vec![(format!("{hash}.{ending}"), shader(program, language, None)?)])
+}
+
+/// What a run before this one left, as far as it still holds.
+#[derive(Default)]
+struct Earlier {
+    /// By recipe: permutations all of whose files are there and whole.
+    entries: HashMap<String, Entry>,
+    files: BTreeMap<String, String>,
+}
+
+fn earlier(folder: &Path, now: &Manifest) -> Result<Earlier, Failure> {
+    let path = folder.join(MANIFEST);
+    let text = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Earlier::default()),
+        Err(error) => return Err(Failure::message(format!("{}: cannot be read: {error}", path.display()))),
+    };
+    let foreign = |why: String| {
+        Failure::message(format!(
+            "{}: is no manifest of permutations ({why}); name another folder",
+            path.display()
+        ))
+    };
+    let manifest: Manifest = serde_json::from_str(&text).map_err(|error| foreign(error.to_string()))?;
+    if manifest.version != now.version {
+        return Err(foreign(format!("version {}, not {VERSION}", manifest.version)));
+    }
+    // Another library, target or pass makes other programs of the same recipe. Files of other programs have other names.
+    if (&manifest.library, &manifest.target, &manifest.pass) != (&now.library, &now.target, &now.pass) {
+        return Ok(Earlier::default());
+    }
+    let whole: BTreeMap<String, String> = manifest
+        .files
+        .into_iter()
+        .filter(|(name, digest)| !name.contains(['/', '\\']) && digest_of(&folder.join(name)).as_ref() == Some(digest))
+        .collect();
+    let good = |entry: &Entry| {
+        let mut programs = entry.programs.iter();
+        programs.all(|p| p.hash.is_some() && p.files.iter().all(|name| whole.contains_key(name)))
+    };
+    let entries = manifest.permutations.into_iter().filter(good);
+    Ok(Earlier {
+        entries: entries.map(|entry| (entry.recipe.clone(), entry)).collect(),
+        files: whole,
+    })
+}
+
+/// Hash of a file's bytes; `None` where it is not there.
+fn digest_of(path: &Path) -> Option<String> {
+    Some(digest(&std::fs::read(path).ok()?))
+}
+
+fn digest(bytes: &[u8]) -> String {
+    let mut hasher = SipHasher13::new();
+    hasher.write(bytes);
+    format!("{:032x}", hasher.finish128().as_u128())
+}
