@@ -1,7 +1,7 @@
 //! Modules written in WESL.
 //!
 //! The crate `wesl` follows the imports and decides the conditions; what it finds is carried out on the author's own text, so that names,
-//! comments and places stay: text that falls away becomes blanks, and imported declarations stand behind the module's own. The result is
+//! comments and places stay: text that falls away is cut out, and imported declarations stand behind the module's own. Each declaration is
 //! parsed again and compared with what `wesl` itself would write ([`splice`]).
 
 mod conditions;

@@ -127,7 +127,8 @@ impl<'a> Source<'a> {
         edits.sort_by_key(|(range, _)| (range.start, range.end));
         let mut text = Text::default();
         text.push(self.file, span.clone(), &edits);
-        if printed(&text.text) == Some(vec![wanted.clone()]) {
+        let again = text.text.parse::<TranslationUnit>().map(|unit| unit.global_declarations);
+        if again.is_ok_and(|all| all.len() == 1 && all[0].to_string() == wanted) {
             return edits;
         }
         vec![(span, wanted)]
@@ -157,6 +158,10 @@ fn words<'a>(tokens: &[&Token<'a>]) -> Vec<(Range<usize>, &'a str)> {
         if token.text == "::" {
             goes_on = true;
         } else if token.is_word() {
+            // wesl writes `case default` for `default`.
+            if token.text == "case" {
+                continue;
+            }
             match found.last_mut().filter(|_| goes_on) {
                 Some((range, name)) => (range.end, *name) = (token.span.end, token.text),
                 None => found.push((token.span.clone(), token.text)),
@@ -167,12 +172,6 @@ fn words<'a>(tokens: &[&Token<'a>]) -> Vec<(Range<usize>, &'a str)> {
         }
     }
     found
-}
-
-/// Declarations of a text as wesl writes them; `None` where it is none.
-fn printed(text: &str) -> Option<Vec<String>> {
-    let unit: TranslationUnit = text.parse().ok()?;
-    Some(unit.global_declarations.iter().map(ToString::to_string).collect())
 }
 
 /// What stands for a module's `NAME.wgsl`: imported directives, the module's own text, imported declarations.
@@ -234,23 +233,7 @@ pub(super) fn splice(
     }
     text.text.push('\n');
 
-    let mut wanted: Vec<String> = result.syntax.global_declarations.iter().map(ToString::to_string).collect();
-    let mut got = printed(&text.text).unwrap_or_default();
-    wanted.retain(|declaration| declaration != ";");
-    got.retain(|declaration| declaration != ";");
-    wanted.sort();
-    got.sort();
-    if wanted == got {
-        return SourceFile::made(path, text.text, text.parts);
-    }
-    // wesl's own form: the same shader, without comments, and all of it at the module's file.
-    let whole = result.syntax.to_string();
-    let part = Part {
-        text: 0..whole.len(),
-        file: Arc::clone(root.file),
-        span: 0..root.file.text.len(),
-    };
-    SourceFile::made(path, whole, vec![part])
+    SourceFile::made(path, text.text, text.parts)
 }
 
 impl Source<'_> {
@@ -286,4 +269,25 @@ fn root_edits(root: &Source, own: &[&GlobalDeclarationNode]) -> Vec<(Range<usize
     edits.extend(own.iter().flat_map(|declaration| root.edits(declaration)));
     edits.sort_by_key(|(range, _)| (range.start, std::cmp::Reverse(range.end)));
     edits
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches an edited declaration that is not what wesl decided: it is taken as wesl writes it, in its place.
+    #[test]
+    fn what_cannot_be_carried_out_is_taken_as_wesl_writes_it() {
+        let edits = |text: &str, decided: &str| {
+            let file = SourceFile::new("a.wesl", text);
+            let unit: TranslationUnit = decided.parse().unwrap();
+            Source::new(&file, &BTreeMap::new()).edits(&unit.global_declarations[0])
+        };
+        let decided = "fn f() -> i32 { return 1 + 1; }";
+        let whole = vec![(0..31, "fn f() -> i32 {\n    return 1 + 1;\n}".to_owned())];
+        assert_eq!(edits("fn f() -> i32 { return 1 + 1; }", decided), []);
+        assert_eq!(edits("fn f() -> i32 { return 1 + 2; }", decided), whole);
+        assert_eq!(edits("fn g() -> i32 { return 1 + 1; }", decided), [(3..4, "f".to_owned())]);
+        assert_eq!(edits("fn g(x: i32, y: i32, z: i32) {} ", decided), whole);
+    }
 }

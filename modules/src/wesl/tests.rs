@@ -1,9 +1,11 @@
+mod diagnostics;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use shadewright_compiler::diagnostics::{Report, SourceFile, codes};
-use shadewright_compiler::{Catalog, Library, Recipe, upstream};
+use shadewright_compiler::diagnostics::SourceFile;
+use shadewright_compiler::{Catalog, Library, Recipe};
 
 use super::Wesl;
 use crate::{Overlay, library as library_of_modules};
@@ -32,6 +34,8 @@ impl Library for Texts {
         Ok(self.0.get(path).cloned())
     }
 }
+
+const ROOT: &str = "brdf/grain/grain.wesl";
 
 const GRAIN: &str = "\
 // Grain.
@@ -207,9 +211,93 @@ fn places_are_the_authors() {
     }
 }
 
+/// Catches syntax that wesl writes in other words than the author, so that comments and places of its declaration would be lost: every file
+/// of the standard library, and what none of them has.
+#[test]
+fn no_syntax_is_taken_in_other_words() {
+    let all = "import super::tools::twice;
+diagnostic(off, derivative_uniformity);
+alias V = vec3<f32>; // alias
+override o: u32 = 3u; // override
+const_assert 1 < 2; // assert
+var<storage, read> a: array<atomic<u32>>; // storage
+var<private> p: mat2x2<f32> = mat2x2<f32>(1f, 0.5, 1e-3, 0x1p4); // private
+@diagnostic(off, derivative_uniformity) @compute @workgroup_size(8, o)
+fn f(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) i: u32) { // compute
+    var x = twice(1.0); // var
+    let q = &x;
+    *q += 1.0; x++; x -= -x; _ = ~i; // assign
+    switch i { case 0, 1u: { x = twice(x); } case 2: { } default { x = 2.0; } } // switch
+    switch (i) { case 3, default: { x = twice(x); } } // switch
+    for (var j = 0; j < 3; j++) { if (j == 1) { continue; } else if j == 2 { break; } else { x = 0.0; } } // for
+    while x < 2.0 { x = x * 2.0; } // while
+    loop { if !((x > 1.0 && x < 4.0) || x == 0.0) { break; } continuing { x = twice(x); break if x >= 3.0; } } // loop
+    const k = array<i32, 2>(1, 2); // const
+    if any(vec2<bool>(true, false)) { return; } // return
+    x = select(1.0, bitcast<f32>(((i << 2u) >> 1u) | (i & 3u) | (1u ^ 2u)), (a[0u].b.c % 2u) != 0u); // shifts
+    @if(fine) discard; // discard
+    @if(fine) x = 1.0; @elif(debug) x = 2.0; @elif(fine && !debug) x = 3.0; @else x = 4.0; // chain
+}
+fn g() -> @location(0) @interpolate(flat, either) vec4<f32> { { return vec4<f32>(twice(0.5)); } } // location
+struct S { @align(16) @size(32) x: f32, @builtin(position) @invariant y: vec4<f32> } // struct
+";
+    let made = resolved(grain().with(ROOT, all)).unwrap();
+    let comments = |text: &str| text.matches(" // ").count();
+    assert_eq!(comments(&made.text), comments(all), "{}", made.text);
+    assert!(made.text.contains("1f, 0.5, 1e-3, 0x1p4"), "{}", made.text);
+
+    let mut seen = 0;
+    for (path, text) in crate::Embedded.files().filter(|(path, _)| path.ends_with(".wgsl")) {
+        // Each function calls something imported, so that none is left as it is.
+        let calling = format!(
+            "import super::tools::twice;\n{}",
+            text.replace(") -> f32 {\n", ") -> f32 {\n    _ = twice(1.0);\n")
+        );
+        let made = resolved(grain().with(ROOT, &calling)).unwrap_or_else(|error| panic!("{path}\n{error}"));
+        let expected = calling
+            .replace("import super::tools::twice;\n", "")
+            .replace("twice(", "tools_twice(");
+        assert!(made.text.starts_with(&expected), "{path}\n{}", made.text);
+        seen += calling.matches("_ = twice").count();
+    }
+    assert!(seen > 20, "{seen}");
+}
+
+/// Catches a reload that keeps a module whose imported file was edited.
+#[test]
+fn an_edit_of_an_imported_file_is_seen() {
+    #[derive(Clone)]
+    struct Edited(Arc<std::sync::Mutex<Texts>>);
+    impl Library for Edited {
+        fn folders(&self, folder: &str) -> Vec<String> {
+            self.0.lock().unwrap().folders(folder)
+        }
+        fn read(&self, path: &str) -> Result<Option<String>, String> {
+            self.0.lock().unwrap().read(path)
+        }
+    }
+    let edited = Edited(Arc::new(std::sync::Mutex::new(dusty_texts(DUST))));
+    let both = Overlay(vec![Arc::new(Wesl(edited.clone())), library_of_modules()]);
+    let catalog = Catalog::load(Arc::new(both)).unwrap_or_else(|report| panic!("{report}"));
+    let recipe = Recipe::parse("r", "(module: \"dusty\")").unwrap();
+    let program = |catalog: &Catalog| catalog.compile_probe(&recipe, "brdf").unwrap_or_else(|report| panic!("{report}"));
+    let before = program(&catalog);
+    for (change, same) in [(format!("\n{DUST}"), true), (DUST.replace("0.0", "0.5"), false)] {
+        let text = dusty_texts(&change);
+        *edited.0.lock().unwrap() = text;
+        let again = catalog.reload().unwrap();
+        let after = program(&again);
+        // The first edit moves a line alone: nothing else changes, but the place does.
+        assert_eq!(after.hash() == before.hash(), same);
+        assert_ne!(after.wgsl(), before.wgsl());
+        // The module, and the compiler's own of the probe.
+        assert_eq!(again.parsed(), 2);
+    }
+}
+
 /// A module in WESL over the standard library.
-fn dusty(helper: &str) -> Catalog {
-    let library = Texts::default()
+fn dusty_texts(helper: &str) -> Texts {
+    Texts::default()
         .with(
             "brdf/dusty/module.ron",
             "(summary: \"Dust\", uses: [\"math\"], params: {\"k\": (type: F32, unit: \"1\", default: 1.4, range: (1.0, 4.0), doc: \"k\")})",
@@ -218,8 +306,11 @@ fn dusty(helper: &str) -> Catalog {
             "brdf/dusty/dusty.wesl",
             "import package::shared::dust::falloff;\n\n/// Minnaert.\nfn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {\n    return s.diffuse * INV_PI * falloff(dot(s.normal, l), params.k);\n}\n",
         )
-        .with("shared/dust.wesl", helper);
-    let both = Overlay(vec![Arc::new(Wesl(library)), library_of_modules()]);
+        .with("shared/dust.wesl", helper)
+}
+
+fn dusty(helper: &str) -> Catalog {
+    let both = Overlay(vec![Arc::new(Wesl(dusty_texts(helper))), library_of_modules()]);
     Catalog::load(Arc::new(both)).unwrap_or_else(|report| panic!("{report}"))
 }
 
@@ -259,171 +350,6 @@ fn an_error_in_an_imported_file_is_told_there() {
     assert!(report.contains("return pow(max(cosine, 0.0), k - true);"), "{report}");
 }
 
-fn refused(path: &str, text: &str, expected: &str) {
-    let report = resolved(grain().with(path, text)).map(|file| file.text.clone()).unwrap_err();
-    assert_eq!(report, expected.trim_start());
-}
-
-const ROOT: &str = "brdf/grain/grain.wesl";
-
-/// Catches an error of wesl that loses its file or its place, and a text that changes by accident; so do the following.
-#[test]
-fn sw0416_wesl_syntax() {
-    refused(
-        ROOT,
-        "fn f() {\n    let x 1;\n}\n",
-        r#"
-error[SW0416]: `1` does not fit here
-  --> brdf/grain/grain.wesl:2:11
-  |
-2 |     let x 1;
-  |           ^ not understood
-  |
-  = expected is `:` or `=`
-"#,
-    );
-    refused(
-        "shared/noise.wgsl",
-        "fn f(",
-        r#"
-error[SW0416]: the file ends too early
-  --> shared/noise.wgsl:1:6
-  |
-1 | fn f(
-  |      ^ not understood
-  |
-  = expected is `@` or `)` or a name
-"#,
-    );
-}
-
-#[test]
-fn sw0417_wesl_import() {
-    refused(
-        ROOT,
-        "import super::nothing::f;\nfn g() { f(); }\n",
-        r#"
-error[SW0417]: the import `package::brdf::grain::nothing` leads nowhere
-  --> brdf/grain/grain.wesl:1:15
-  |
-1 | import super::nothing::f;
-  |               ^^^^^^^ not there
-  |
-  = looked for `brdf/grain/nothing.wesl` and `brdf/grain/nothing.wgsl` in the library's folder
-"#,
-    );
-    refused(
-        ROOT,
-        "import package::shared::noise::{hush, Cell};\nfn g(c: Cell) -> f32 { return hush(c); }\n",
-        r#"
-error[SW0417]: `package::shared::noise` has no declaration `hush`
-  --> brdf/grain/grain.wesl:1:33
-  |
-1 | import package::shared::noise::{hush, Cell};
-  |                                 ^^^^ not there
-  |
-  = did you mean `hash`?
-  = declarations of `shared/noise.wgsl`: LIMIT, Cell, unused, mix_up, hash
-"#,
-    );
-    refused(
-        ROOT,
-        "import bevy::pbr::f;\nfn g() { f(); }\n",
-        r#"
-error[SW0417]: the import `bevy::pbr` leads nowhere
-  --> brdf/grain/grain.wesl:1:14
-  |
-1 | import bevy::pbr::f;
-  |              ^^^ not there
-  |
-  = a path begins with `package::`, the library's folder, or `super::`; other packages are not taken
-"#,
-    );
-    refused(
-        "brdf/grain/tools.wesl",
-        "@publish import super::grain::twice;\n",
-        r#"
-error[SW0417]: an import that is passed on
-  --> brdf/grain/tools.wesl:1:2
-  |
-1 | @publish import super::grain::twice;
-  |  ^^^^^^^ not taken
-  |
-  = import from the file that has the declaration
-"#,
-    );
-}
-
-#[test]
-fn sw0418_wesl_condition() {
-    refused(
-        ROOT,
-        "@if(fine && slow)\nfn f() {}\n",
-        r#"
-error[SW0418]: there is no feature `slow`
-  --> brdf/grain/grain.wesl:1:13
-  |
-1 | @if(fine && slow)
-  |             ^^^^ asked for here
-  |
-  = declare it in the `wesl.ron` of the module's folder: `(features: {"slow": true})`
-"#,
-    );
-    refused(
-        ROOT,
-        "fn f() {}\n@else\nfn g() {}\n",
-        r#"
-error[SW0418]: an @elif or @else attribute must be preceded by a @if or @elif on the previous node
-  --> brdf/grain/grain.wesl:2:1
-  |  
-2 | / @else
-3 | | fn g() {}
-  | \---------^ here
-"#,
-    );
-}
-
-#[test]
-fn sw0419_wesl_declaration() {
-    refused(
-        "brdf/grain/wesl.ron",
-        "(\n    feature: {\"fine\": true},\n)\n",
-        r#"
-error[SW0419]: this declares no features
-  --> brdf/grain/wesl.ron:2:5
-  |
-2 |     feature: {"fine": true},
-  |     ^^^^^^^ Unexpected field named `feature` in `Declared`, expected `features` instead
-  |
-  = expected is `(features: {"name": true})`
-"#,
-    );
-}
-
-#[test]
-fn sw0420_wesl_and_wgsl() {
-    refused(
-        "brdf/grain/grain.wgsl",
-        "",
-        r#"
-error[SW0420]: `brdf/grain/grain.wgsl` and `brdf/grain/grain.wesl` are both there
- = a module's code is in one of them: remove the other
-"#,
-    );
-}
-
-#[test]
-fn sw0707_wesl_panic() {
-    let report = upstream::guarded_in("wesl", codes::WESL_PANIC, "resolving `a.wesl`", || panic!("planted")).map(|(): ()| ());
-    let report = report.map_err(|diagnostic| Report::from(diagnostic).render());
-    let expected = "\
-error[SW0707]: wesl gave up while resolving `a.wesl`
- = planted
- = this is an error of wesl, which reads and writes shaders for us; a simpler formulation may avoid it
-";
-    assert_eq!(report.unwrap_err(), expected);
-}
-
 /// Catches imports that lead in a circle, or a file that imports itself, and a text too deep for wesl's stack.
 #[test]
 fn circles_and_depths_end() {
@@ -442,6 +368,28 @@ fn circles_and_depths_end() {
     assert!(resolved(grain().with(ROOT, &deep)).is_ok());
     let deeper = format!("fn f() -> f32 {{ return {}1.0{}; }}", "(".repeat(200), ")".repeat(200));
     assert!(resolved(grain().with(ROOT, &deeper)).unwrap_err().starts_with("error[SW0702]"));
+}
+
+/// Catches an order, or a choice among several errors, that comes from wesl's hash maps.
+#[test]
+fn equal_input_gives_equal_bytes() {
+    let root: String = (0..8)
+        .map(|i| format!("fn f{i}() -> f32 {{ return super::t{i}::g(); }}\n"))
+        .collect();
+    let library = |body: &str| {
+        let add = |library: Texts, i: i32| library.with(&format!("brdf/grain/t{i}.wesl"), &body.replace('I', &i.to_string()));
+        (0..8).fold(grain().with(ROOT, &root), add)
+    };
+    let good = library("fn g() -> f32 { return I.0; }");
+    let text = resolved(good.clone()).unwrap().text.clone();
+    assert!(text.find("fn t1_g()") < text.find("fn t5_g()"), "{text}");
+    let bad = library("fn h() -> f32 { return I.0; }");
+    let error = resolved(bad.clone()).unwrap_err();
+    assert!(error.contains("`package::brdf::grain::t0` has no declaration `g`"), "{error}");
+    for _ in 0..8 {
+        assert_eq!(resolved(good.clone()).unwrap().text, text);
+        assert_eq!(resolved(bad.clone()).unwrap_err(), error);
+    }
 }
 
 /// What a file loses and gets while it is being written.
