@@ -117,6 +117,35 @@ fn a_key_changes_with_exactly_the_files_that_the_recipe_reaches() {
     }
 }
 
+/// Catches a key that forgets what an interface uses, where no module of the tree names it.
+#[test]
+fn a_key_changes_with_what_interfaces_use() {
+    let texts = small()
+        .category("deep", "", "const SCALE: f32 = 2.0;\n")
+        .category(
+            "between",
+            r#"uses: ["deep"]"#,
+            "fn scaled(x: f32) -> f32 {\n    return x * SCALE;\n}\n",
+        )
+        .category(
+            "value",
+            r#"uses: ["between"]"#,
+            "fn value(x: f32) -> f32 {\n    return scaled(x);\n}\n",
+        )
+        .module("value", "own", "", "fn value(x: f32) -> f32 {\n    return scaled(x) + 1.0;\n}\n");
+    let recipe = recipe(r#"(module: "run", fill: {"value": "own"})"#);
+    for path in [
+        "deep/interface.wgsl",
+        "deep/category.ron",
+        "between/interface.wgsl",
+        "between/category.ron",
+    ] {
+        let mut edited = texts.clone();
+        edited.0.get_mut(path).unwrap().push('\n');
+        assert_ne!(key(&edited, &recipe, "main"), key(&texts, &recipe, "main"), "{path}");
+    }
+}
+
 /// Catches keys that are equal for unequal products, and a key of the recipe's spelling instead of its tree.
 #[test]
 fn a_key_is_that_of_the_tree_and_the_pass() {
