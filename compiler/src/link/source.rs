@@ -7,8 +7,8 @@ use std::ops::Range;
 
 use super::edits::dead_text;
 use crate::manifest::Combine;
-use crate::parse::scan::{Item, ItemKind, whole_lines};
-use crate::parse::{Meaning, Origin, StructKey, Unit, joined, typed_wgsl, wgsl_type};
+use crate::parse::scan::{Item, ItemKind};
+use crate::parse::{Meaning, Origin, StructKey, Unit, joined, typed_wgsl, wgsl_type, whole_lines};
 use crate::plan::{Body, GROUPS, Plan, Planned};
 
 /// Writes the source form.

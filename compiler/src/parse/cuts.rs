@@ -9,7 +9,8 @@ use naga::{Block, Expression, Function, Handle, Span, Statement};
 
 use super::branches::{Choice, choice, leaves, reachable};
 use super::lex::{Kind, Token};
-use super::scan::{Item, closing, whole_lines};
+use super::lines::whole_lines;
+use super::scan::{Item, closing};
 use super::unit::Unit;
 
 /// A `let`, or an assignment to `_`.
