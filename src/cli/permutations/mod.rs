@@ -103,7 +103,7 @@ fn sampled<'s>(space: &'s Space, options: &Options) -> Result<Drawn<'s>, Failure
             iter: Box::new(space.iter()?),
         },
         Sample::Pairwise => {
-            let cover = space.pairwise();
+            let cover = space.pairwise()?;
             Drawn {
                 number: cover.len() as u128,
                 iter: Box::new(cover.into_iter()),
