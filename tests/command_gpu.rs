@@ -256,3 +256,33 @@ fn bad_scenes_draw_nothing() {
     assert_eq!(std::fs::read_to_string(&picture).unwrap(), "old");
     assert_eq!(names(folder.path()), ["a.png", "bad.scene.ron", "good.scene.ron"]);
 }
+
+/// Catches a list of needs that opens a device, that depends on the number of threads, or whose rows cannot be compiled.
+#[test]
+fn needs_are_listed_without_a_driver() {
+    let scene = "examples/scenes/first.scene.ron";
+    let json = without_driver(&["render", scene, "--needs", "--format", "json"]);
+    assert_eq!((json.status, json.err.as_str()), (0, ""));
+    let rows = json.json();
+    let rows = rows.as_array().expect("a list");
+    let stages: Vec<&str> = rows.iter().map(|row| row["stage"].as_str().expect("a stage")).collect();
+    for stage in ["shadow_map", "scene", "display"] {
+        assert!(stages.contains(&stage), "no {stage} in {stages:?}");
+    }
+    let display = &rows[stages.iter().position(|s| *s == "display").expect("a display pass")];
+    assert_eq!(display["state"]["render"]["color"], "rgba8unorm");
+    for row in rows {
+        let [recipe, pass] = ["recipe", "pass"].map(|field| row[field].as_str().expect("a string"));
+        assert_eq!(
+            good(&["emit", recipe, "--pass", pass, "--format", "json"]).json()["hash"],
+            row["hash"]
+        );
+    }
+    let text = without_driver(&["render", scene, "--needs"]);
+    let last = text.text().trim_end().lines().last().expect("lines").to_owned();
+    assert!(last.starts_with(&format!("{} needs, ", rows.len())), "{last}");
+    let one = finish(shadewright().env("RAYON_NUM_THREADS", "1").args(["render", scene, "--needs"]));
+    assert_eq!(one.text(), text.text());
+    bad(&["render", scene], 2, &["-o <FILE>"]);
+    bad(&["render", scene, "--needs", "-o", "a.png"], 2, &["--needs"]);
+}

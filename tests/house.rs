@@ -71,9 +71,15 @@ fn the_arrows_go_one_way() {
         ("shadewright-modules", &["shadewright-compiler"][..]),
         ("shadewright-runtime", &["shadewright-compiler", "shadewright-modules"][..]),
         (
+            "shadewright-benchmark",
+            &["shadewright-compiler", "shadewright-modules", "shadewright-runtime"][..],
+        ),
+        (
             "shadewright",
             &["shadewright-compiler", "shadewright-modules", "shadewright-runtime"][..],
         ),
+        // Somebody else's: the compiler when it runs, the modules when it is built.
+        ("renderer", &["shadewright-compiler", "shadewright-modules"][..]),
     ]);
     let metadata: Value = serde_json::from_str(&cargo(&["metadata", "--no-deps", "--format-version", "1", "--offline"])).expect("JSON");
     let packages = metadata["packages"].as_array().expect("packages");
@@ -118,6 +124,32 @@ fn the_compiler_has_no_gpu() {
     }
 }
 
+/// Catches an example of somebody else's renderer that has more of ours in it than it says: the compiler alone where it links shaders
+/// itself, nothing where its build script wrote them.
+#[test]
+fn a_users_renderer_has_little_or_nothing_of_ours() {
+    let ours = |features: &[&str]| -> Vec<String> {
+        let mut arguments = vec![
+            "tree",
+            "--package",
+            "renderer",
+            "--edges",
+            "normal",
+            "--prefix",
+            "none",
+            "--offline",
+        ];
+        arguments.extend(features);
+        let tree = cargo(&arguments);
+        assert!(tree.contains("wgpu v"), "{tree}");
+        let names = tree.lines().filter_map(|line| line.split(' ').next());
+        let names: BTreeSet<&str> = names.filter(|name| name.starts_with("shadewright")).collect();
+        names.into_iter().map(str::to_owned).collect()
+    };
+    assert_eq!(ours(&[]), ["shadewright-compiler"]);
+    assert_eq!(ours(&["--no-default-features"]), Vec::<String>::new());
+}
+
 /// Catches a compiler that reaches anything but its arguments and its `Library`.
 #[test]
 fn the_compiler_touches_nothing_outside() {
@@ -154,6 +186,8 @@ const HOMONYMS: &[(&str, &str, &str)] = &[
     ("compiler/src", "material", "a bind group"),
     ("compiler/src", "pass", "a bind group; the field of a resource's declaration"),
     ("compiler/src", "depth", "a kind of texture"),
+    ("compiler/src", "visibility", "a field of wgpu's layouts"),
+    ("compiler/src", "static", "a word of Rust"),
     ("runtime/src", "depth", "a kind of texture"),
     ("runtime/src", "display", "the scene's field, and the frame's image"),
     ("runtime/src", "forward", "a member of the interface's struct for views"),

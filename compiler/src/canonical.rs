@@ -36,13 +36,13 @@ pub fn canonical_module(name: &str, wgsl: &str) -> Result<naga::Module, Report> 
 fn canonical<T: Send>(name: &str, wgsl: &str, of: impl FnOnce(&naga::Module) -> T + Send) -> Result<T, Report> {
     let catalog = Catalog::load(Arc::new(Nothing))?;
     let file = SourceFile::new(name, wgsl);
-    let unit = Arc::new(parse_whole(Arc::clone(&file))?);
+    let unit = parse_whole(Arc::clone(&file))?;
     let module = Arc::new(Module {
         name: name.to_owned(),
         category: String::new(),
         manifest: empty_manifest(),
         source: Arc::clone(&file),
-        unit: Some(unit),
+        variants: unit.into(),
     });
     let tree = resolve_root(&catalog, module, &Node::new(name), Place::new(&file))?;
     let instances = Instances::find(&catalog, &tree);

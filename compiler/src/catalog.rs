@@ -1,6 +1,11 @@
 //! All that a library declares, loaded once.
 
+mod load;
+mod reload;
+mod variants;
+
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use indexmap::IndexMap;
@@ -10,12 +15,13 @@ use crate::contracts;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::library::Library;
 use crate::limits;
-use crate::manifest::{
-    CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, check_category, check_module, parse_category, parse_module, typed,
-};
+use crate::manifest::{CategoryManifest, ModuleManifest, Param, ParamMode, Typed, Value, typed};
 use crate::parse::scan::{Item, ItemKind, scan};
 use crate::parse::{Interface, Needs, SlotNeed, Unit, brackets, check_interface, compose, parse_unit};
 use crate::resolve::Place;
+use load::{Declared, declared, read};
+
+pub(crate) use variants::Variants;
 
 /// A category with its name.
 #[derive(Debug)]
@@ -39,12 +45,9 @@ pub struct Module {
     pub manifest: ModuleManifest,
     /// `module.ron`.
     pub source: Arc<SourceFile>,
-    /// Its parsed text, of modules that the compiler makes itself.
-    pub(crate) unit: Option<Arc<Unit>>,
+    /// Its parsed text.
+    pub(crate) variants: Variants,
 }
-
-/// A parsed unit by what it was parsed from: module and constants.
-type UnitKey = (String, Vec<(String, String)>);
 
 /// The manifests of a library, and a cache of its parsed WGSL. Cheap to load, shared between threads.
 pub struct Catalog {
@@ -53,7 +56,8 @@ pub struct Catalog {
     modules: Vec<Arc<Module>>,
     interfaces: Mutex<HashMap<String, Arc<Interface>>>,
     interface_units: Mutex<HashMap<String, Arc<Unit>>>,
-    units: Mutex<HashMap<UnitKey, Arc<Unit>>>,
+    /// How many texts it has parsed.
+    parsed: AtomicUsize,
 }
 
 impl std::fmt::Debug for Catalog {
@@ -73,41 +77,14 @@ impl Catalog {
     /// # Errors
     /// A manifest is no RON, or says something that cannot be.
     pub fn load(library: Arc<dyn Library>) -> Result<Self, Report> {
-        let mut categories = Vec::new();
-        let mut modules = Vec::new();
-        let mut found = Vec::new();
-        for name in sorted(library.folders("")) {
-            let path = format!("{name}/category.ron");
-            let Some(text) = read(library.as_ref(), &path)? else {
-                found.extend(stray_module(library.as_ref(), &name)?);
-                continue;
-            };
-            match parse_category(&path, &text) {
-                Ok(parsed) => {
-                    if let Err(report) = check_category(&parsed) {
-                        found.extend(report.diagnostics);
-                    }
-                    modules.extend(load_modules(library.as_ref(), &name, &mut found)?);
-                    categories.push(Arc::new(Category {
-                        name,
-                        manifest: parsed.value,
-                        source: parsed.file,
-                    }));
-                }
-                Err(report) => found.extend(report.diagnostics),
-            }
-        }
-        Report::unless_empty(found)?;
-        categories.sort_by(|a, b| (a.manifest.order, &a.name).cmp(&(b.manifest.order, &b.name)));
-        let order: HashMap<&str, usize> = categories.iter().enumerate().map(|(i, c)| (c.name.as_str(), i)).collect();
-        modules.sort_by(|a: &Arc<Module>, b| (order.get(a.category.as_str()), &a.name).cmp(&(order.get(b.category.as_str()), &b.name)));
+        let Declared { categories, modules } = declared(library.as_ref())?;
         let catalog = Self {
             library,
-            categories: categories.into_iter().map(|c| (c.name.clone(), c)).collect(),
+            categories,
             modules,
             interfaces: Mutex::default(),
             interface_units: Mutex::default(),
-            units: Mutex::default(),
+            parsed: AtomicUsize::new(0),
         };
         Report::unless_empty(contracts::unknown_interfaces(&catalog))?;
         Ok(catalog)
@@ -219,6 +196,11 @@ impl Catalog {
         Diagnostic::new(codes::UNKNOWN_MODULE, format!("there is no module `{name}`")).suggest(name, "modules", known)
     }
 
+    /// Text of a file of the library; `None` where there is none.
+    pub(crate) fn text(&self, path: &str) -> Result<Option<String>, Report> {
+        read(self.library.as_ref(), path)
+    }
+
     /// A category's interface, scanned.
     pub(crate) fn interface(&self, name: &str) -> Result<Arc<Interface>, Report> {
         if let Some(done) = lock(&self.interfaces).get(name) {
@@ -239,8 +221,7 @@ impl Catalog {
             }
         }
         contracts::named_functions(&interface, &used)?;
-        lock(&self.interfaces).insert(name.to_owned(), Arc::clone(&interface));
-        Ok(interface)
+        Ok(first(&self.interfaces, name, interface))
     }
 
     fn read_interface(&self, name: &str) -> Result<Interface, Report> {
@@ -290,23 +271,18 @@ impl Catalog {
         )?;
         contracts::interface_unit(&interface.category, &unit)?;
         let unit = Arc::new(unit);
-        lock(&self.interface_units).insert(name.to_owned(), Arc::clone(&unit));
-        Ok(unit)
+        Ok(first(&self.interface_units, name, unit))
     }
 
     /// A module, parsed with these constants.
     pub(crate) fn unit(&self, module: &Arc<Module>, constants: &IndexMap<String, (Value, Typed)>) -> Result<Arc<Unit>, Report> {
-        if let Some(unit) = &module.unit {
-            return Ok(Arc::clone(unit));
-        }
-        let values = constants.iter().map(|(n, (_, v))| (n.clone(), v.wgsl())).collect();
-        let key = (format!("{}/{}", module.category, module.name), values);
-        if let Some(done) = lock(&self.units).get(&key) {
-            return Ok(Arc::clone(done));
+        let key = Variants::key(constants);
+        if let Some(done) = module.variants.get(&key) {
+            return Ok(done);
         }
         let path = format!("{0}/{1}/{1}.wgsl", module.category, module.name);
-        let file = match read(self.library.as_ref(), &path)? {
-            Some(text) => SourceFile::new(path, text),
+        let file = match self.library.file(&path)? {
+            Some(file) => file,
             None => {
                 return Err(Diagnostic::new(codes::MISSING_WGSL, format!("`{path}` is not there"))
                     .at(&module.source, 0..0, "declared here")
@@ -315,8 +291,7 @@ impl Catalog {
             }
         };
         let unit = Arc::new(self.parse_module(module, file, constants)?);
-        lock(&self.units).insert(key, Arc::clone(&unit));
-        Ok(unit)
+        Ok(module.variants.insert(key, unit))
     }
 
     /// Parses a module's text.
@@ -327,6 +302,7 @@ impl Catalog {
         constants: &IndexMap<String, (Value, Typed)>,
     ) -> Result<Unit, Report> {
         limits::check_wgsl(&file)?;
+        self.parsed.fetch_add(1, Ordering::Relaxed);
         let scan = scan(&file.text);
         brackets(&file, &scan)?;
         let needs = needs(module, constants)?;
@@ -438,62 +414,10 @@ fn default_of(module: &Module, name: &str, param: &Param) -> Result<Typed, Repor
     })
 }
 
-fn load_modules(library: &dyn Library, category: &str, found: &mut Vec<Diagnostic>) -> Result<Vec<Arc<Module>>, Report> {
-    let mut modules = Vec::new();
-    for name in sorted(library.folders(category)) {
-        let path = format!("{category}/{name}/module.ron");
-        let Some(text) = read(library, &path)? else {
-            found.push(
-                Diagnostic::new(
-                    codes::MISSING_MANIFEST,
-                    format!("the folder `{category}/{name}` has no `module.ron`"),
-                )
-                .note("a folder in a category is a module"),
-            );
-            continue;
-        };
-        match parse_module(&path, &text) {
-            Ok(parsed) => {
-                if let Err(report) = check_module(&parsed) {
-                    found.extend(report.diagnostics);
-                }
-                modules.push(Arc::new(Module {
-                    name,
-                    category: category.to_owned(),
-                    manifest: parsed.value,
-                    source: parsed.file,
-                    unit: None,
-                }));
-            }
-            Err(report) => found.extend(report.diagnostics),
-        }
-    }
-    Ok(modules)
-}
-
-/// The error about a folder that holds a module but is no category.
-fn stray_module(library: &dyn Library, folder: &str) -> Result<Option<Diagnostic>, Report> {
-    for name in sorted(library.folders(folder)) {
-        if read(library, &format!("{folder}/{name}/module.ron"))?.is_some() {
-            let message = format!("the folder `{folder}` holds the module `{name}`, but has no `category.ron`");
-            return Ok(Some(Diagnostic::new(codes::MISSING_CATEGORY, message).note(
-                "a folder with modules is a category: declare it, or move the module into one that is",
-            )));
-        }
-    }
-    Ok(None)
-}
-
-fn sorted(mut names: Vec<String>) -> Vec<String> {
-    names.sort();
-    names.dedup();
-    names
-}
-
-fn read(library: &dyn Library, path: &str) -> Result<Option<String>, Report> {
-    library
-        .read(path)
-        .map_err(|why| Diagnostic::new(codes::UNREADABLE_FILE, format!("`{path}` cannot be read: {why}")).into())
+/// Keeps what was made, unless another thread was faster: whoever asks gets the one that was there first, since linking goes by
+/// identity.
+fn first<T>(kept: &Mutex<HashMap<String, Arc<T>>>, name: &str, made: Arc<T>) -> Arc<T> {
+    Arc::clone(lock(kept).entry(name.to_owned()).or_insert(made))
 }
 
 /// A panic while the lock was held can only have left a cache entry out: the maps are never half changed.

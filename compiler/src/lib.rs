@@ -6,8 +6,8 @@
 //! nothing else, and can say why each thing in it is there.
 //!
 //! ```text
-//! RON text -> manifests, recipe -> parsed units -> resolved tree -> plan -> linked -> validated -> text | reflection
-//!             (manifest)           (parse)         (resolve)        (plan)  (link)    (validate)   (emit)  (reflect)
+//! RON text -> manifests, recipe -> parsed units -> resolved tree -> plan -> linked -> validated -> text | reflection | Rust
+//!             (manifest)           (parse)         (resolve)        (plan)  (link)    (validate)   (emit)  (reflect)   (host)
 //! ```
 //!
 //! Each arrow is a folder, each thing between two arrows an owned type. Linking is done on naga's IR: every module is parsed
@@ -66,6 +66,8 @@ mod contracts;
 pub mod diagnostics;
 pub mod emit;
 pub mod hash;
+pub mod host;
+mod key;
 pub mod library;
 pub mod limits;
 mod link;
@@ -84,6 +86,7 @@ mod why;
 pub use catalog::{Catalog, Category, Module};
 pub use diagnostics::{Diagnostic, Report};
 pub use emit::{Target, emit};
+pub use key::NAGA;
 pub use library::Library;
 pub use naga;
 pub use program::{LinkPlan, Program, Recipe, Why};

@@ -24,6 +24,8 @@ pub const LIST_LENGTH: usize = 1024;
 pub const TREE_DEPTH: usize = 32;
 /// Most module instances of a recipe, defaults included ([`codes::TOO_MANY_INSTANCES`]).
 pub const INSTANCES: usize = 1024;
+/// Most sets of constants for which a module's parsed text is kept; the oldest goes then, and is parsed again when it is needed.
+pub const VARIANTS: usize = 64;
 
 /// Checks a file's size.
 ///

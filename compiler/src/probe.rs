@@ -5,7 +5,7 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 
 use crate::canonical::empty_manifest;
-use crate::catalog::{Catalog, Module};
+use crate::catalog::{Catalog, Module, Variants};
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::manifest::{Arity, Filling, ModuleManifest, Node, Resource, ResourceKind, Slot};
 use crate::parse::lex::Kind;
@@ -53,13 +53,11 @@ impl Catalog {
             category: String::new(),
             manifest,
             source,
-            unit: None,
+            variants: Variants::default(),
         };
-        module.unit = Some(Arc::new(self.parse_module(
-            &module,
-            SourceFile::new("probe.wgsl", text),
-            &IndexMap::new(),
-        )?));
+        module.variants = self
+            .parse_module(&module, SourceFile::new("probe.wgsl", text), &IndexMap::new())?
+            .into();
         let module = Arc::new(module);
         let mut node = Node::new(PROBE);
         node.fill.insert("subject".to_owned(), Filling::One(recipe.root.clone()));

@@ -19,9 +19,10 @@ pub use crate::why::Why;
 #[derive(Debug)]
 pub struct Program {
     validated: Validated,
-    reflection: Reflection,
+    reflection: OnceLock<Reflection>,
     hash: u128,
     plan: Plan,
+    pass: String,
     wgsl: OnceLock<String>,
 }
 
@@ -31,9 +32,10 @@ impl Program {
         &self.validated
     }
 
-    /// What a host must know to run it.
+    /// What a host must know to run it. Found out when first asked for.
     pub fn reflection(&self) -> &Reflection {
-        &self.reflection
+        self.reflection
+            .get_or_init(|| reflect(&self.plan, &self.validated, self.hash, &self.pass))
     }
 
     /// Hash of the canonical IR: equal for programs that mean the same up to names.
@@ -48,7 +50,14 @@ impl Program {
 
     /// Why a function, binding, parameter, override, struct or constant is there; empty if it is not.
     pub fn why(&self, name: &str) -> Vec<Why> {
-        why::why(&self.plan, &self.reflection, self.wgsl(), name)
+        why::why(&self.plan, self.reflection(), self.wgsl(), name)
+    }
+
+    /// Whether a catalog would compile the recipe to this program again: no edit between the catalogs touches what it is made of.
+    pub fn is_current(&self, catalog: &Catalog) -> bool {
+        let modules = self.plan.tree.nodes.iter().all(|node| catalog.has_module(&node.module));
+        let interfaces = self.plan.homes.iter().filter(|home| home.instance.is_none());
+        modules && interfaces.into_iter().all(|home| catalog.has_interface(&home.unit))
     }
 
     /// The tree of the recipe as it was resolved, defaults included: a line a module with its slot path.
@@ -122,6 +131,25 @@ impl Catalog {
         self.finish(self.plan(recipe, pass)?)
     }
 
+    /// The root's own pass, and behind it every pass that must run before it, in their order.
+    ///
+    /// # Errors
+    /// As for [`Catalog::compile`].
+    pub fn compile_all(&self, recipe: &Recipe) -> Result<Vec<Program>, Report> {
+        let main = self.compile(recipe, "main")?;
+        let before: Vec<String> = main
+            .reflection()
+            .passes
+            .iter()
+            .map(|pass| format!("{}.{}", pass.instance, pass.name))
+            .collect();
+        let mut all = vec![main];
+        for pass in before {
+            all.push(self.compile(recipe, &pass)?);
+        }
+        Ok(all)
+    }
+
     /// The first half of [`Catalog::compile`]: everything that can be known before anything is written.
     ///
     /// # Errors
@@ -180,7 +208,7 @@ impl Catalog {
         })
     }
 
-    /// The second half of [`Catalog::compile`]: links, validates and reflects.
+    /// The second half of [`Catalog::compile`]: links and validates.
     ///
     /// # Errors
     /// The linked module does not pass naga's validator.
@@ -194,7 +222,6 @@ impl Catalog {
                 // The module is gone with the error: writing it again is for failures only.
                 Err(error) => return Err(located(&plan, &link(&plan), &error)),
             };
-            let reflection = reflect(self, &plan, &validated, hash, &pass);
             // While there is room for it.
             let wgsl = if plan.deep {
                 OnceLock::from(write_source(&plan))
@@ -203,9 +230,10 @@ impl Catalog {
             };
             Ok(Program {
                 validated,
-                reflection,
+                reflection: OnceLock::new(),
                 hash,
                 plan,
+                pass,
                 wgsl,
             })
         })?

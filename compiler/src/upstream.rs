@@ -1,4 +1,4 @@
-//! Calls into naga that no input may turn into a crash.
+//! Calls into naga, and into what else reads shaders for us, that no input may turn into a crash.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -16,6 +16,14 @@ pub const THREAD: &str = "shadewright-naga";
 /// # Errors
 /// It panicked; `what` says what it was doing.
 pub fn guarded<T: Send>(code: &'static str, what: &str, work: impl FnOnce() -> T + Send) -> Result<T, Diagnostic> {
+    guarded_in("naga", code, what, work)
+}
+
+/// As [`guarded`], for work of another crate, called by its name.
+///
+/// # Errors
+/// It panicked; `what` says what it was doing.
+pub fn guarded_in<T: Send>(upstream: &str, code: &'static str, what: &str, work: impl FnOnce() -> T + Send) -> Result<T, Diagnostic> {
     let caught = || catch_unwind(AssertUnwindSafe(work));
     let result = if cfg!(target_family = "wasm") {
         // No threads there, and a panic ends the program.
@@ -36,9 +44,11 @@ pub fn guarded<T: Send>(code: &'static str, what: &str, work: impl FnOnce() -> T
     result.map_err(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no reason given");
-        Diagnostic::new(code, format!("naga gave up while {what}"))
+        Diagnostic::new(code, format!("{upstream} gave up while {what}"))
             .note(text.lines().next().unwrap_or_default())
-            .note("this is an error of naga, which reads and writes shaders for us; a simpler formulation may avoid it")
+            .note(format!(
+                "this is an error of {upstream}, which reads and writes shaders for us; a simpler formulation may avoid it"
+            ))
     })
 }
 

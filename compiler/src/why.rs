@@ -71,7 +71,7 @@ pub fn why(plan: &Plan, reflection: &Reflection, wgsl: &str, name: &str) -> Vec<
     for global in &plan.globals {
         let unit = &plan.homes[global.home].unit;
         let own = unit.ir.global_variables[global.handle].name.clone().unwrap_or_default();
-        let emitted = plan.names.get(&(global.home, own.clone())).unwrap_or(&own);
+        let emitted = plan.name(global.home, &own).unwrap_or(&own);
         if emitted == name {
             let path = (0..plan.functions.len()).find(|&f| reads_global(plan, f, global.home, global.handle));
             found.push(answer(
@@ -86,9 +86,9 @@ pub fn why(plan: &Plan, reflection: &Reflection, wgsl: &str, name: &str) -> Vec<
     if found.is_empty() {
         found.extend(
             plan.names
-                .iter()
-                .filter(|(_, emitted)| *emitted == name)
-                .filter_map(|((home, own), _)| item(plan, wgsl, name, *home, own)),
+                .all(&plan.homes)
+                .filter(|&(_, _, emitted)| emitted == name)
+                .filter_map(|(home, own, _)| item(plan, wgsl, name, home, own)),
         );
     }
     found
@@ -179,8 +179,7 @@ fn reads_param(function: &naga::Function, unit: &crate::parse::Unit, param: &str
     let constant = crate::parse::constant_name(param);
     function.expressions.iter().any(|(_, e)| match *e {
         naga::Expression::AccessIndex { base, index: member } => {
-            Some(member) == index
-                && matches!(function.expressions[base], naga::Expression::GlobalVariable(g) if crate::plan::is_params(unit, g))
+            Some(member) == index && matches!(function.expressions[base], naga::Expression::GlobalVariable(g) if unit.params == Some(g))
         }
         naga::Expression::Constant(c) => unit.ir.constants[c].name.as_ref() == Some(&constant),
         naga::Expression::Override(o) => unit.ir.overrides[o].name.as_ref() == Some(&constant),

@@ -17,10 +17,14 @@
 //! let mine = Overlay(vec![Arc::new(Folder::new("./shaders")), library()]);
 //! ```
 
+pub mod build;
 pub mod cases;
 mod embedded;
 mod folder;
 mod overlay;
+mod recorded;
+#[cfg(feature = "wesl")]
+mod wesl;
 
 use std::sync::Arc;
 
@@ -29,6 +33,9 @@ use shadewright_compiler::Library;
 pub use embedded::Embedded;
 pub use folder::Folder;
 pub use overlay::Overlay;
+pub use recorded::Recorded;
+#[cfg(feature = "wesl")]
+pub use wesl::Wesl;
 
 /// The standard library.
 pub fn library() -> Arc<dyn Library> {

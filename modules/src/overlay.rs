@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
-use shadewright_compiler::Library;
+use shadewright_compiler::diagnostics::SourceFile;
+use shadewright_compiler::{Library, Report};
 
 /// Several libraries as one. A file is the first library's that has it; folders are the union of all.
 ///
@@ -21,6 +22,15 @@ impl Library for Overlay {
         for library in &self.0 {
             if let Some(text) = library.read(path)? {
                 return Ok(Some(text));
+            }
+        }
+        Ok(None)
+    }
+
+    fn file(&self, path: &str) -> Result<Option<Arc<SourceFile>>, Report> {
+        for library in &self.0 {
+            if let Some(file) = library.file(path)? {
+                return Ok(Some(file));
             }
         }
         Ok(None)

@@ -1,5 +1,6 @@
 //! What can be typed, and which file does it.
 
+mod bindings;
 mod check;
 mod diff;
 mod emit;
@@ -7,6 +8,7 @@ pub mod failure;
 mod graph;
 mod input;
 mod list;
+mod needs;
 mod new;
 mod output;
 mod permutations;
@@ -63,6 +65,8 @@ enum Command {
     Check(check::Options),
     /// Writes the shader of a recipe, and its binding layout
     Emit(emit::Options),
+    /// Writes Rust for a renderer of one's own: structs, bind groups, pipelines
+    Bindings(bindings::Options),
     /// Shows the tree of a recipe, defaults written out
     Graph(graph::Options),
     /// Says why a function, binding, parameter or struct is in the shader
@@ -84,7 +88,7 @@ pub struct Context {
     /// Standard library, with the folders of `--modules` over it.
     pub library: Arc<dyn compiler::Library>,
     /// Its manifests.
-    pub catalog: compiler::Catalog,
+    pub catalog: Arc<compiler::Catalog>,
     /// How to write.
     pub format: Format,
 }
@@ -98,11 +102,14 @@ impl Context {
         }
         let mut layers: Vec<Arc<dyn compiler::Library>> = Vec::new();
         for folder in folders.iter().rev() {
-            layers.push(Arc::new(Folder::new(folder)));
+            let folder = Folder::new(folder);
+            #[cfg(feature = "wesl")]
+            let folder = modules::Wesl(folder);
+            layers.push(Arc::new(folder));
         }
         layers.push(modules::library());
         let library: Arc<dyn compiler::Library> = Arc::new(Overlay(layers));
-        let catalog = compiler::Catalog::load(Arc::clone(&library))?;
+        let catalog = Arc::new(compiler::Catalog::load(Arc::clone(&library))?);
         Ok(Self { library, catalog, format })
     }
 }
@@ -120,6 +127,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::List(options) => list::run(&context(&arguments.modules)?, &options),
         Command::Show(options) => show::run(&context(&arguments.modules)?, &options),
         Command::Emit(options) => emit::run(&context(&arguments.modules)?, &options),
+        Command::Bindings(options) => bindings::run(&context(&arguments.modules)?, &options),
         Command::Graph(options) => graph::run(&context(&arguments.modules)?, &options),
         Command::Why(options) => why::run(&context(&arguments.modules)?, &options),
         Command::Diff(options) => diff::run(&context(&arguments.modules)?, &options),

@@ -1,7 +1,6 @@
 //! `render`: a scene into a picture.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use shadewright::compiler::Recipe;
@@ -13,7 +12,7 @@ use shadewright::runtime::scene::SceneFile;
 
 use super::failure::Failure;
 use super::output::Outputs;
-use super::{Context, check, input};
+use super::{Context, check, input, needs};
 
 /// Options of `render`.
 #[derive(Args)]
@@ -21,8 +20,8 @@ pub struct Options {
     /// Scene (*.scene.ron), or - for standard input
     scene: PathBuf,
     /// Picture: *.png as displayed, *.exr the linear HDR frame in cd/m2
-    #[arg(short, value_name = "FILE")]
-    output: PathBuf,
+    #[arg(short, value_name = "FILE", required_unless_present = "needs")]
+    output: Option<PathBuf>,
     /// Width and height in pixels, instead of the scene's own
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
@@ -32,6 +31,9 @@ pub struct Options {
     /// What is shown
     #[arg(long, value_enum, default_value_t = View::Beauty)]
     view: View,
+    /// Draw nothing: list the programs and states that the scene needs before its first frame, in their order. No GPU is touched
+    #[arg(long, conflicts_with = "output")]
+    needs: bool,
 }
 
 /// What a picture shows.
@@ -57,13 +59,13 @@ fn size(typed: &str) -> Result<[u32; 2], String> {
 /// The scene is wrong, there is no GPU, or the file cannot be written.
 pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
     let View::Beauty = options.view;
-    let extension = options.output.extension().and_then(|extension| extension.to_str());
-    let kind = match extension {
-        Some("png") => Kind::Png,
-        Some("exr") => Kind::Exr,
-        _ => {
-            let name = options.output.display();
-            return Err(Failure::Usage(format!("{name}: a picture's name ends in .png or .exr")));
+    let output = options.output.as_deref();
+    let kind = match (output, output.and_then(Path::extension).and_then(|extension| extension.to_str())) {
+        (None, _) => None,
+        (_, Some("png")) => Some(Kind::Png),
+        (_, Some("exr")) => Some(Kind::Exr),
+        (Some(name), _) => {
+            return Err(Failure::Usage(format!("{}: a picture's name ends in .png or .exr", name.display())));
         }
     };
     let mut scene = read(&options.scene)?;
@@ -74,6 +76,9 @@ pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
         scene = scene.set(path.trim(), value.trim())?;
     }
     let mut frame = scene.frame(&context.catalog, options.size)?;
+    let (Some(output), Some(kind)) = (output, kind) else {
+        return needs::say(&context.catalog, &frame, context.format);
+    };
     match kind {
         Kind::Exr => frame.display = None,
         Kind::Png if frame.display.is_none() => {
@@ -84,7 +89,7 @@ pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
         Kind::Png => {}
     }
     let gpu = Gpu::headless()?;
-    let targets = Renderer::new(&gpu, Arc::new(context.catalog)).render(&frame)?;
+    let targets = Renderer::new(&gpu, context.catalog).render(&frame)?;
     let [width, height] = frame.size;
     let picture = match targets.read_display(&gpu)? {
         Some(pixels) => encode_png(width, height, &pixels),
@@ -97,7 +102,7 @@ pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
     };
     let picture = picture.map_err(|error| Failure::message(error.to_string()))?;
     let mut outputs = Outputs::default();
-    outputs.stage(&options.output, &picture)?;
+    outputs.stage(output, &picture)?;
     outputs.commit()
 }
 

@@ -69,6 +69,11 @@ codes! {
     MISSING_WGSL = "SW0412", "A module's or interface's WGSL file is not there.";
     RESERVED_NAME = "SW0413", "A module declares a name that the linker generates.";
     NOT_LINKABLE = "SW0415", "A module uses ray tracing, cooperative matrices or mesh stages, which the linker does not take.";
+    WESL_SYNTAX = "SW0416", "A module's or an imported file's WESL cannot be parsed.";
+    WESL_IMPORT = "SW0417", "An import of WESL that leads nowhere, or in a way that is not taken.";
+    WESL_CONDITION = "SW0418", "A condition of WESL that is malformed, or that asks for a feature which is not declared.";
+    WESL_DECLARATION = "SW0419", "A `wesl.ron` that is no RON, or says something unknown.";
+    WESL_AND_WGSL = "SW0420", "A module with both a WESL and a WGSL file.";
 
     LINKED_INVALID = "SW0501", "The linked module does not pass validation.";
     CAPABILITY_UNDECLARED = "SW0502", "A module uses a capability that its manifest does not declare.";
@@ -84,6 +89,7 @@ codes! {
     TOO_MANY_INSTANCES = "SW0704", "More module instances than the limit.";
     UPSTREAM_PANIC = "SW0705", "naga gave up with an internal error.";
     LIST_TOO_LONG = "SW0706", "A list longer than the limit.";
+    WESL_PANIC = "SW0707", "wesl gave up with an internal error.";
 
     MISSING_CATEGORY = "SW0801", "A folder of modules without `category.ron`.";
     MISSING_MANIFEST = "SW0802", "A module's folder without `module.ron`.";

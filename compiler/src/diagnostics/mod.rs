@@ -4,4 +4,4 @@ pub mod codes;
 mod render;
 mod report;
 
-pub use report::{Diagnostic, Label, Position, Report, SourceFile, nearest};
+pub use report::{Diagnostic, Label, Part, Position, Report, SourceFile, nearest};

@@ -7,8 +7,21 @@ use std::sync::Arc;
 pub struct SourceFile {
     /// Name shown to people: a path relative to the library, or what the caller named it.
     pub name: String,
-    /// The text as the author wrote it.
+    /// The text as the author wrote it, or as a library made it of what authors wrote.
     pub text: String,
+    /// Where a made text comes from, in the text's order; empty for what an author wrote as it stands.
+    parts: Vec<Part>,
+}
+
+/// A part of a made text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Bytes of the made text.
+    pub text: Range<usize>,
+    /// The author's file.
+    pub file: Arc<SourceFile>,
+    /// Bytes of the author's file. As many as of the made text: each byte stands for the one in its place; else all for all.
+    pub span: Range<usize>,
 }
 
 impl SourceFile {
@@ -17,7 +30,55 @@ impl SourceFile {
         Arc::new(Self {
             name: name.into(),
             text: text.into(),
+            parts: Vec::new(),
         })
+    }
+
+    /// A text made of parts of other files: errors in it are told at their places. Parts stand in order and do not overlap; places that are
+    /// in none of them are told as they are.
+    pub fn made(name: impl Into<String>, text: impl Into<String>, parts: Vec<Part>) -> Arc<Self> {
+        Arc::new(Self {
+            name: name.into(),
+            text: text.into(),
+            parts,
+        })
+    }
+
+    /// The author's file and the bytes of it that these bytes come from: itself, where the author wrote it as it stands.
+    pub fn origin(self: &Arc<Self>, span: Range<usize>) -> (Arc<Self>, Range<usize>) {
+        let Some(first) = self.part(span.start) else {
+            return (Arc::clone(self), span);
+        };
+        let copied = |part: &Part| part.text.len() == part.span.len();
+        let start = if copied(first) {
+            first.span.start + (span.start - first.text.start)
+        } else {
+            first.span.start
+        };
+        let last = self
+            .part(span.end.saturating_sub(1).max(span.start))
+            .filter(|last| Arc::ptr_eq(&last.file, &first.file));
+        let end = match last {
+            Some(last) if copied(last) => last.span.start + (span.end - last.text.start),
+            Some(last) => last.span.end,
+            None => first.span.end,
+        };
+        (Arc::clone(&first.file), start..end.max(start))
+    }
+
+    fn part(&self, byte: usize) -> Option<&Part> {
+        let part = self.parts.get(self.parts.partition_point(|part| part.text.end <= byte))?;
+        part.text.contains(&byte).then_some(part)
+    }
+
+    /// Name of the author's file and line of it for a byte of the text, which stands on this line of the text.
+    pub(crate) fn line_of(&self, byte: usize, line: usize) -> (&str, usize) {
+        let Some(part) = self.part(byte) else {
+            return (&self.name, line);
+        };
+        let copied = part.text.len() == part.span.len();
+        let start = part.span.start + if copied { byte - part.text.start } else { 0 };
+        (&part.file.name, part.file.position(start).line)
     }
 
     /// Line and column of a byte of the text; a byte past the end counts as the end.
@@ -98,11 +159,12 @@ impl Diagnostic {
         }
     }
 
-    /// Adds a place; the first one added is the primary one.
+    /// Adds a place, told in the author's own file; the first one added is the primary one.
     #[must_use]
     pub fn at(mut self, file: &Arc<SourceFile>, span: Range<usize>, text: impl Into<String>) -> Self {
+        let (file, span) = file.origin(span);
         self.labels.push(Label {
-            file: Arc::clone(file),
+            file,
             span,
             text: text.into(),
         });
@@ -216,6 +278,38 @@ mod tests {
             assert_eq!(file.byte_at(file.position(byte)), byte);
         }
         assert_eq!(file.byte_at(Position { line: 9, column: 9 }), file.text.len());
+    }
+
+    /// Catches an error in a made text that is told at its place there, or at the wrong one in the author's file.
+    #[test]
+    fn made_texts_are_told_by_their_parts() {
+        let (one, two) = (SourceFile::new("one", "abcdefgh"), SourceFile::new("two", "0123456789"));
+        let part = |text, file: &Arc<SourceFile>, span| Part {
+            text,
+            file: Arc::clone(file),
+            span,
+        };
+        // "cd" + "XYZ" in place of "ef" + "gh" + "\n" + "345"
+        let parts = vec![
+            part(0..2, &one, 2..4),
+            part(2..5, &one, 4..6),
+            part(5..7, &one, 6..8),
+            part(8..11, &two, 3..6),
+        ];
+        let made = SourceFile::made("made", "cdXYZgh\n345", parts);
+        let told = |span| {
+            let (file, span) = made.origin(span);
+            (file.name.clone(), span)
+        };
+        assert_eq!(told(1..2), ("one".to_owned(), 3..4));
+        assert_eq!(told(3..4), ("one".to_owned(), 4..6)); // no byte of the word has a place of its own
+        assert_eq!(told(1..6), ("one".to_owned(), 3..7));
+        assert_eq!(told(7..8), ("made".to_owned(), 7..8));
+        assert_eq!(told(9..11), ("two".to_owned(), 4..6));
+        assert_eq!(told(6..9), ("one".to_owned(), 7..8)); // over two files: the first
+        assert_eq!(told(0..0), ("one".to_owned(), 2..2));
+        assert_eq!(one.origin(1..3), (Arc::clone(&one), 1..3));
+        assert_eq!(Diagnostic::new("SW0101", "m").at(&made, 9..10, "").labels[0].file, two);
     }
 
     /// Catches a suggestion of something far off, and a miss of an evident one.

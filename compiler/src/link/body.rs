@@ -5,9 +5,8 @@ use naga::{
 };
 
 use super::ir::Linker;
-use crate::plan::{
-    Choice, Planned, can_go, choice, expression_operands_mut, is_dead_store, is_params, reachable, statement_operands_mut, struct_of,
-};
+use crate::parse::{Choice, choice, expression_operands_mut, reachable, statement_operands_mut};
+use crate::plan::{Planned, is_dead_store, struct_of};
 
 type Exprs = Vec<Option<Handle<Expression>>>;
 
@@ -19,7 +18,6 @@ struct Copying<'f> {
     home: usize,
     planned: &'f Planned,
     source: &'f Function,
-    info: &'f naga::valid::FunctionInfo,
     exprs: Exprs,
     locals: Vec<Option<Handle<LocalVariable>>>,
 }
@@ -43,13 +41,10 @@ impl Linker<'_> {
             ty: self.ty(home, r.ty),
             binding: r.binding.clone(),
         });
-        let plan = self.plan;
-        let Some(info) = planned.info(&plan.homes) else { return out };
         let mut copying = Copying {
             home,
             planned,
             source,
-            info,
             exprs: vec![None; source.expressions.len()],
             locals: vec![None; source.local_variables.len()],
         };
@@ -60,6 +55,7 @@ impl Linker<'_> {
                 copying.exprs[handle.index()] = Some(out.expressions.append(patched, span));
             }
         }
+        out.named_expressions.reserve(source.named_expressions.len());
         for (&handle, name) in &source.named_expressions {
             if let Some(done) = copying.exprs[handle.index()] {
                 out.named_expressions.insert(done, name.clone());
@@ -114,7 +110,7 @@ impl Linker<'_> {
             }
             Expression::GlobalVariable(global) => {
                 let unit = &self.plan.homes[home].unit;
-                *global = if is_params(unit, *global) {
+                *global = if unit.params == Some(*global) {
                     self.params_block(copying, *global)
                 } else {
                     self.global(home, *global)
@@ -154,15 +150,15 @@ impl Linker<'_> {
         copying
             .planned
             .calls
-            .get(&function)
-            .and_then(|&index| self.functions[index])
+            .get(function)
+            .and_then(|index| self.functions[index])
             .unwrap_or(function)
     }
 
     /// Whether a call stays although nobody reads its result.
     fn is_kept(&self, copying: &Copying, callee: Handle<Function>) -> bool {
-        !can_go(&self.plan.functions, copying.planned, &self.plan.homes[copying.home].unit, callee)
-            && copying.planned.calls.contains_key(&callee)
+        let unit = &self.plan.homes[copying.home].unit;
+        copying.planned.is_kept(&self.plan.functions, unit, callee)
     }
 
     /// The block for a use of `params`: all parameters of one home are in one group.
@@ -183,11 +179,11 @@ impl Linker<'_> {
         let plan = self.plan;
         let unit = &plan.homes[copying.home].unit;
         if let Expression::GlobalVariable(global) = copying.source.expressions[base]
-            && is_params(unit, global)
+            && unit.params == Some(global)
         {
             return self.block_member(copying.home, index).map_or(index, |(_, member)| member);
         }
-        match struct_of(copying.home, &plan.structs, copying.info, &unit.ir, base) {
+        match struct_of(copying.planned, &plan.structs, unit, base) {
             Some(id) if !plan.structs.list[id].fixed => plan.structs.new_index(id, index),
             _ => index,
         }
@@ -242,7 +238,7 @@ impl Linker<'_> {
 
     fn statement(&self, copying: &Copying, out: &Function, statement: &Statement) -> Option<Statement> {
         let plan = self.plan;
-        let ir = &plan.homes[copying.home].unit.ir;
+        let unit = &plan.homes[copying.home].unit;
         let mut patched = match statement {
             Statement::If { condition, accept, reject } => {
                 let (accept, reject) = (self.block(copying, out, accept), self.block(copying, out, reject));
@@ -274,7 +270,7 @@ impl Linker<'_> {
                     break_if: break_if.map(|b| copying.get(b)),
                 });
             }
-            Statement::Store { pointer, .. } if is_dead_store(copying.home, &plan.structs, copying.source, copying.info, ir, *pointer) => {
+            Statement::Store { pointer, .. } if is_dead_store(copying.planned, &plan.structs, unit, copying.source, *pointer) => {
                 return None;
             }
             // A call that can go, and whose result nobody reads.

@@ -1,7 +1,5 @@
 //! Writing a plan as IR, by cloning the units' functions and patching what they refer to.
 
-use rustc_hash::FxHashMap as HashMap;
-
 use naga::proc::Layouter;
 use naga::{Constant, EntryPoint, Expression, GlobalVariable, Handle, Module, Override, ResourceBinding, Span, Type};
 
@@ -31,12 +29,34 @@ fn stage_order(stage: naga::ShaderStage) -> u8 {
 /// What of a home's unit is already in the output.
 #[derive(Default)]
 pub(super) struct Copied {
-    pub types: HashMap<Handle<Type>, Handle<Type>>,
-    pub constants: HashMap<Handle<Constant>, Handle<Constant>>,
-    pub overrides: HashMap<Handle<Override>, Handle<Override>>,
-    pub expressions: HashMap<Handle<Expression>, Handle<Expression>>,
-    pub globals: HashMap<Handle<GlobalVariable>, Handle<GlobalVariable>>,
-    pub filters: HashMap<Handle<naga::diagnostic_filter::DiagnosticFilterNode>, Handle<naga::diagnostic_filter::DiagnosticFilterNode>>,
+    pub types: Map<Type>,
+    pub constants: Map<Constant>,
+    pub overrides: Map<Override>,
+    pub expressions: Map<Expression>,
+    pub globals: Map<GlobalVariable>,
+    pub filters: Map<naga::diagnostic_filter::DiagnosticFilterNode>,
+}
+
+/// From handles of a unit to those of the output.
+pub(super) struct Map<T>(Vec<Option<Handle<T>>>);
+
+impl<T> Default for Map<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T> Map<T> {
+    pub fn get(&self, handle: Handle<T>) -> Option<Handle<T>> {
+        *self.0.get(handle.index())?
+    }
+
+    pub fn insert(&mut self, handle: Handle<T>, done: Handle<T>) {
+        if self.0.len() <= handle.index() {
+            self.0.resize(handle.index() + 1, None);
+        }
+        self.0[handle.index()] = Some(done);
+    }
 }
 
 pub(super) struct Linker<'p> {
@@ -108,11 +128,11 @@ impl<'p> Linker<'p> {
 
     pub fn name(&self, home: usize, name: &Option<String>) -> Option<String> {
         let name = name.as_ref()?;
-        Some(self.plan.names.get(&(home, name.clone())).unwrap_or(name).clone())
+        Some(self.plan.name(home, name).unwrap_or(name).to_owned())
     }
 
     pub fn global_expression(&mut self, home: usize, handle: Handle<Expression>) -> Handle<Expression> {
-        if let Some(&done) = self.copied[home].expressions.get(&handle) {
+        if let Some(done) = self.copied[home].expressions.get(handle) {
             return done;
         }
         let ir = &self.plan.homes[home].unit.ir;
@@ -167,7 +187,7 @@ impl<'p> Linker<'p> {
 
     pub fn constant(&mut self, home: usize, handle: Handle<Constant>) -> Handle<Constant> {
         let (home, handle) = self.declaring_constant(self.plan.shared_home(home), handle);
-        if let Some(&done) = self.copied[home].constants.get(&handle) {
+        if let Some(done) = self.copied[home].constants.get(handle) {
             return done;
         }
         let ir = &self.plan.homes[home].unit.ir;
@@ -210,7 +230,7 @@ impl<'p> Linker<'p> {
     }
 
     pub fn override_(&mut self, home: usize, handle: Handle<Override>) -> Handle<Override> {
-        if let Some(&done) = self.copied[home].overrides.get(&handle) {
+        if let Some(done) = self.copied[home].overrides.get(handle) {
             return done;
         }
         let ir = &self.plan.homes[home].unit.ir;
@@ -234,7 +254,7 @@ impl<'p> Linker<'p> {
     /// A module-scope variable other than `params`.
     pub fn global(&mut self, home: usize, handle: Handle<GlobalVariable>) -> Handle<GlobalVariable> {
         let (home, handle) = crate::plan::declaring(self.plan, home, handle);
-        if let Some(&done) = self.copied[home].globals.get(&handle) {
+        if let Some(done) = self.copied[home].globals.get(handle) {
             return done;
         }
         let ir = &self.plan.homes[home].unit.ir;
@@ -316,7 +336,7 @@ impl<'p> Linker<'p> {
         leaf: Option<Handle<naga::diagnostic_filter::DiagnosticFilterNode>>,
     ) -> Option<Handle<naga::diagnostic_filter::DiagnosticFilterNode>> {
         let leaf = leaf?;
-        if let Some(&done) = self.copied[home].filters.get(&leaf) {
+        if let Some(done) = self.copied[home].filters.get(leaf) {
             return Some(done);
         }
         let ir = &self.plan.homes[home].unit.ir;

@@ -1,61 +1,87 @@
 //! Writing a plan as source: the authors' own text, only what is reached, with linked names and bindings.
 
-use rustc_hash::FxHashMap as HashMap;
-use std::collections::{BTreeSet, VecDeque};
+use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::ops::Range;
 
-use super::edits::{Edit, dead_text};
+use super::edits::dead_text;
 use crate::manifest::Combine;
 use crate::parse::scan::{Item, ItemKind, whole_lines};
-use crate::parse::{Origin, StructKey, constant_name, param_uses, typed_wgsl, wgsl_type};
+use crate::parse::{Meaning, Origin, StructKey, Unit, typed_wgsl, wgsl_type};
 use crate::plan::{Body, GROUPS, Plan, Planned, joined};
 
 /// Writes the source form.
 pub fn write_source(plan: &Plan) -> String {
-    let mut writer = Writer {
-        plan,
-        wanted: BTreeSet::new(),
-        queue: VecDeque::new(),
-        params: HashMap::default(),
-    };
-    for (number, block) in plan.blocks.iter().enumerate() {
+    let mut params: Vec<Vec<String>> = plan.homes.iter().map(|_| Vec::new()).collect();
+    for block in &plan.blocks {
+        let group = GROUPS[block.group as usize];
         for member in &block.members {
-            writer
-                .params
-                .insert((member.home, member.param.clone()), (number, member.name.clone()));
+            let of_home = &mut params[member.home];
+            of_home.resize(plan.homes[member.home].unit.needs.uniforms.len(), String::new());
+            of_home[member.index as usize] = format!("{group}_params.{}", member.name);
         }
     }
+    let writer = Writer {
+        plan,
+        items: plan
+            .homes
+            .iter()
+            .map(|h| vec![Wanted::No; added(&h.unit) + h.unit.scan.items.len()])
+            .collect(),
+        queue: Vec::new(),
+        params,
+        edits: Vec::new(),
+        dead: Vec::new(),
+    };
     writer.write()
+}
+
+/// A stretch of text and what stands there instead.
+type Edit<'p> = (Range<usize>, Cow<'p, str>);
+
+/// How many items the linker itself adds to a unit: its constants and overrides, `Instance` and `instances`.
+fn added(unit: &Unit) -> usize {
+    unit.needs.constants.len() + unit.needs.overrides.len() + 2
+}
+
+/// An item other than a function that some written text names.
+#[derive(Clone, Debug)]
+enum Wanted {
+    No,
+    Yes,
+    Written(ItemKind, String),
 }
 
 struct Writer<'p> {
     plan: &'p Plan,
-    /// Items other than functions that some written text names: home, name.
-    wanted: BTreeSet<(usize, String)>,
-    queue: VecDeque<(usize, String)>,
-    /// Block and member of a uniform parameter.
-    params: HashMap<(usize, String), (usize, String)>,
+    /// By home: what the linker adds, then the text's own items.
+    items: Vec<Vec<Wanted>>,
+    queue: Vec<(usize, usize)>,
+    /// What a uniform parameter is called, by home and index; empty where nobody reads it.
+    params: Vec<Vec<String>>,
+    /// Of the item that is being written.
+    edits: Vec<Edit<'p>>,
+    dead: Vec<Range<usize>>,
 }
 
-impl Writer<'_> {
-    fn write(&mut self) -> String {
+impl<'p> Writer<'p> {
+    fn write(mut self) -> String {
         let plan = self.plan;
-        let mut functions = String::new();
+        let mut functions = String::with_capacity(1 << 15);
         for planned in &plan.functions {
             functions.push('\n');
-            functions.push_str(&self.function(planned));
+            self.function(planned, &mut functions);
         }
         for global in &plan.globals {
             let unit = &plan.homes[global.home].unit;
             if let Some(name) = &unit.ir.global_variables[global.handle].name {
-                self.want(global.home, name);
+                self.want_named(global.home, name);
             }
         }
-        let mut items: HashMap<(usize, String), (ItemKind, String)> = HashMap::default();
-        while let Some((home, name)) = self.queue.pop_front() {
-            if let Some(written) = self.item(home, &name) {
-                items.insert((home, name), written);
+        while let Some((home, index)) = self.queue.pop() {
+            if let Some((kind, text)) = self.item(home, index) {
+                self.items[home][index] = Wanted::Written(kind, text);
             }
         }
         let mut out = self.directives();
@@ -65,12 +91,13 @@ impl Writer<'_> {
             &[ItemKind::Alias, ItemKind::Struct][..],
             &[ItemKind::Variable][..],
         ] {
-            for home in self.homes_in_order() {
-                for name in self.names_in_order(home) {
-                    if let Some((kind, text)) = items.get(&(home, name))
+            let interfaces = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_none());
+            for home in interfaces.chain((0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_some())) {
+                for item in &self.items[home] {
+                    if let Wanted::Written(kind, text) = item
                         && kinds.contains(kind)
                     {
-                        self.gap(&mut out, *kind);
+                        gap(&mut out, *kind);
                         out.push_str(text);
                     }
                 }
@@ -80,44 +107,25 @@ impl Writer<'_> {
             }
         }
         out.push_str(&functions);
-        out.trim_start().to_owned()
+        let blank = out.len() - out.trim_start().len();
+        out.drain(..blank);
+        out
     }
 
-    fn gap(&self, out: &mut String, kind: ItemKind) {
-        let flat = matches!(kind, ItemKind::Constant | ItemKind::Override | ItemKind::Variable | ItemKind::Alias);
-        if !flat || out.ends_with("}\n") {
-            out.push('\n');
+    fn want(&mut self, home: usize, index: usize) {
+        if let Some(item @ Wanted::No) = self.items[home].get_mut(index) {
+            *item = Wanted::Yes;
+            self.queue.push((home, index));
         }
     }
 
-    fn homes_in_order(&self) -> Vec<usize> {
-        let homes = &self.plan.homes;
-        let interfaces = (0..homes.len()).filter(|&h| homes[h].instance.is_none());
-        interfaces
-            .chain((0..homes.len()).filter(|&h| homes[h].instance.is_some()))
-            .collect()
-    }
-
-    /// Names of a home's items, the linker's own first.
-    fn names_in_order(&self, home: usize) -> Vec<String> {
+    fn want_named(&mut self, home: usize, name: &str) {
         let unit = &self.plan.homes[home].unit;
-        let mut names: Vec<String> = unit
-            .needs
-            .constants
-            .keys()
-            .chain(unit.needs.overrides.keys())
-            .map(|n| constant_name(n))
-            .collect();
-        names.extend(["Instance".to_owned(), "instances".to_owned()]);
-        names.extend(unit.scan.items.iter().map(|i| i.name.clone()));
-        let mut seen = BTreeSet::new();
-        names.retain(|n| !n.is_empty() && seen.insert(n.clone()));
-        names
-    }
-
-    fn want(&mut self, home: usize, name: &str) {
-        if self.wanted.insert((home, name.to_owned())) {
-            self.queue.push_back((home, name.to_owned()));
+        let first = added(unit);
+        if let Some(index) = unit.scan.item_index(name) {
+            self.want(home, first + index);
+        } else if name == "instances" {
+            self.want(home, first - 1);
         }
     }
 
@@ -126,14 +134,14 @@ impl Writer<'_> {
         let mut lines = BTreeSet::new();
         for planned in &self.plan.functions {
             let unit = &self.plan.homes[planned.home].unit;
-            for item in unit.scan.items.iter().filter(|i| i.kind == ItemKind::Directive) {
+            for item in unit.scan.directives() {
                 let text = &unit.file.text[item.span.clone()];
                 if !text.starts_with("diagnostic") {
-                    lines.insert(text.to_owned());
+                    lines.insert(text);
                 }
             }
         }
-        lines.into_iter().map(|line| line + "\n").collect()
+        lines.into_iter().flat_map(|line| [line, "\n"]).collect()
     }
 
     fn blocks(&self, out: &mut String) {
@@ -145,12 +153,11 @@ impl Writer<'_> {
                 let declared = self.plan.homes[member.home].unit.needs.uniforms.get(&member.param);
                 let Some(param) = declared else { continue };
                 if !param.doc.is_empty() {
-                    let unit = if param.unit.is_empty() || param.unit == "1" {
-                        String::new()
-                    } else {
-                        format!(" [{}]", param.unit)
-                    };
-                    let _ = writeln!(out, "    /// {}{unit}", param.doc.replace('\n', " "));
+                    let _ = write!(out, "    /// {}", param.doc.replace('\n', " "));
+                    if !param.unit.is_empty() && param.unit != "1" {
+                        let _ = write!(out, " [{}]", param.unit);
+                    }
+                    out.push('\n');
                 }
                 let _ = writeln!(out, "    {}: {},", member.name, wgsl_type(param.ty));
             }
@@ -168,80 +175,72 @@ impl Writer<'_> {
     }
 
     /// An item other than a function.
-    fn item(&mut self, home: usize, name: &str) -> Option<(ItemKind, String)> {
+    fn item(&mut self, home: usize, index: usize) -> Option<(ItemKind, String)> {
         let plan = self.plan;
         let unit = &plan.homes[home].unit;
-        let emitted = plan.names.get(&(home, name.to_owned())).cloned().unwrap_or_else(|| name.to_owned());
-        match unit.origin(name) {
-            Some(Origin::Param(param)) => {
-                if let Some(value) = unit.needs.constants.get(param) {
-                    return Some((
-                        ItemKind::Constant,
-                        format!("const {emitted}: {} = {};\n", typed_wgsl(value), value.wgsl()),
-                    ));
-                }
-                let (declared, default) = unit.needs.overrides.get(param)?;
-                Some((
-                    ItemKind::Override,
-                    format!("override {emitted}: {} = {};\n", wgsl_type(declared.ty), default.wgsl()),
-                ))
-            }
-            Some(Origin::Instances) if name == "Instance" => {
-                Some((ItemKind::Struct, crate::parse::fields_struct(&emitted, &unit.needs.instances)))
-            }
-            Some(Origin::Instances) => {
-                let declared = plan.shared_home(home);
-                self.want(declared, "Instance");
-                let ty = plan.names.get(&(declared, "Instance".to_owned()))?;
-                Some((
-                    ItemKind::Variable,
-                    format!("{}var<storage, read> {emitted}: array<{ty}>;\n", self.binding(home, name)?),
-                ))
-            }
-            Some(Origin::Own) => {
-                let item = unit.scan.item(name).filter(|i| i.kind != ItemKind::Function)?;
-                let mut edits = self.references(home, item, None);
-                edits.push((item.name_span.clone(), emitted));
-                if item.kind == ItemKind::Struct {
-                    let key = (plan.homes[home].first, name);
-                    self.dead_members(key, home, item, &mut edits);
-                }
-                if item.kind == ItemKind::Variable
-                    && let Some(binding) = self.binding(home, name)
-                {
-                    edits.push((item.span.start..item.span.start, binding));
-                }
-                let mut text = apply(&unit.file.text, item.doc_start..item.span.end, edits);
-                text.push('\n');
-                Some((item.kind, text))
-            }
-            _ => None,
+        let needs = &unit.needs;
+        let first = added(unit);
+        if let Some((_, value)) = needs.constants.get_index(index) {
+            let emitted = plan.names.of_added(home, index)?;
+            let text = format!("const {emitted}: {} = {};\n", typed_wgsl(value), value.wgsl());
+            return Some((ItemKind::Constant, text));
         }
+        if let Some((_, (declared, default))) = needs.overrides.get_index(index.wrapping_sub(needs.constants.len())) {
+            let emitted = plan.names.of_added(home, index)?;
+            let text = format!("override {emitted}: {} = {};\n", wgsl_type(declared.ty), default.wgsl());
+            return Some((ItemKind::Override, text));
+        }
+        if index + 2 == first {
+            let emitted = plan.name(home, "Instance")?;
+            return Some((ItemKind::Struct, crate::parse::fields_struct(emitted, &needs.instances)));
+        }
+        if index + 1 == first {
+            let declared = plan.shared_home(home);
+            self.want(declared, added(&plan.homes[declared].unit) - 2);
+            let (emitted, ty) = (plan.name(home, "instances")?, plan.name(declared, "Instance")?);
+            let text = format!("{}var<storage, read> {emitted}: array<{ty}>;\n", self.binding(home, "instances")?);
+            return Some((ItemKind::Variable, text));
+        }
+        let at = index - first;
+        let item = unit.scan.items.get(at).filter(|i| i.kind != ItemKind::Function)?;
+        if unit.origin(&item.name) != Some(&Origin::Own) {
+            return None;
+        }
+        self.edits.clear();
+        self.dead.clear();
+        self.references(home, at, None);
+        let emitted = plan.name(home, &item.name).unwrap_or(&item.name);
+        self.edits.push((item.name_span.clone(), emitted.into()));
+        if item.kind == ItemKind::Struct {
+            self.dead_members(home, item);
+        }
+        if item.kind == ItemKind::Variable
+            && let Some(binding) = self.binding(home, &item.name)
+        {
+            self.edits.push((item.span.start..item.span.start, binding.into()));
+        }
+        let mut text = String::new();
+        apply(&unit.file.text, item.doc_start..item.span.end, &mut self.edits, &mut text);
+        text.push('\n');
+        Some((item.kind, text))
     }
 
     fn binding(&self, home: usize, name: &str) -> Option<String> {
         let unit = &self.plan.homes[home].unit;
-        let global = self
-            .plan
-            .globals
-            .iter()
-            .find(|g| g.home == home && unit.ir.global_variables[g.handle].name.as_deref() == Some(name))?;
+        let mut globals = self.plan.globals.iter();
+        let global = globals.find(|g| g.home == home && unit.ir.global_variables[g.handle].name.as_deref() == Some(name))?;
         let (group, binding) = global.binding?;
         Some(format!("@group({group}) @binding({binding}) "))
     }
 
-    fn dead_members(&self, (declared, name): (usize, &str), home: usize, item: &Item, edits: &mut Vec<Edit>) {
+    fn dead_members(&mut self, home: usize, item: &Item) {
         let unit = &self.plan.homes[home].unit;
         let key = StructKey {
             interface: None,
-            name: name.to_owned(),
+            name: item.name.clone(),
         };
-        let Some(id) = self
-            .plan
-            .structs
-            .named(declared, name)
-            .filter(|_| !unit.fixed_structs.contains(&key))
-        else {
+        let declared = self.plan.structs.named(&self.plan.homes, self.plan.homes[home].first, &item.name);
+        let Some(id) = declared.filter(|_| !unit.fixed_structs.contains(&key)) else {
             return;
         };
         let text = &unit.file.text;
@@ -254,48 +253,48 @@ impl Writer<'_> {
             if unit.scan.tokens.get(field.tokens.end).is_some_and(|t| t.is(b',')) {
                 end = unit.scan.tokens[field.tokens.end].end as usize;
             }
-            edits.push((whole_lines(text, &unit.scan.tokens, bytes.start..end), String::new()));
+            self.edits.push((whole_lines(text, &unit.scan.tokens, bytes.start..end), "".into()));
         }
     }
 
-    fn function(&mut self, planned: &Planned) -> String {
+    fn function(&mut self, planned: &'p Planned, out: &mut String) {
         let plan = self.plan;
         let home = &plan.homes[planned.home];
         let unit = &home.unit;
         if let Body::Combined { stub, rule, slot, .. } = &planned.body {
-            return self.combined(planned, *stub, *rule, slot);
+            self.combined(planned, *stub, *rule, slot, out);
+            return;
         }
-        let Some(item) = unit.scan.item(planned.source_name(&plan.homes)) else {
-            return String::new();
+        let Some(at) = unit.scan.item_index(planned.source_name(&plan.homes)) else {
+            return;
         };
-        let dead = dead_text(plan, planned, item);
-        let mut edits = self.references(planned.home, item, Some((planned, &dead)));
-        edits.push((item.name_span.clone(), planned.name.clone()));
-        edits.extend(dead.into_iter().map(|range| (range, String::new())));
-        let mut text = String::new();
-        let line = unit.file.position(item.span.start).line;
-        let place = home.instance.map_or_else(String::new, |i| {
-            let paths: Vec<&str> = plan.instances.list[i]
-                .nodes
-                .iter()
-                .map(|&n| plan.tree.nodes[n].path.as_str())
-                .collect();
-            format!(" at {}", paths.join(", "))
-        });
-        let _ = writeln!(text, "// {}:{line}{place}", unit.file.name);
-        for directive in unit.scan.items.iter().filter(|i| i.kind == ItemKind::Directive) {
+        let item = &unit.scan.items[at];
+        self.edits.clear();
+        self.dead.clear();
+        dead_text(plan, planned, &mut self.dead);
+        self.references(planned.home, at, Some(planned));
+        self.edits.push((item.name_span.clone(), planned.name.as_str().into()));
+        self.edits.extend(self.dead.drain(..).map(|range| (range, "".into())));
+        // Infallible: writing to a string.
+        let (file, line) = unit.file.line_of(item.span.start, item.line);
+        let _ = write!(out, "// {file}:{line}");
+        for (number, &node) in home.instance.iter().flat_map(|&i| &plan.instances.list[i].nodes).enumerate() {
+            out.push_str(if number == 0 { " at " } else { ", " });
+            out.push_str(&plan.tree.nodes[node].path);
+        }
+        out.push('\n');
+        for directive in unit.scan.directives() {
             // A filter of the module's file holds for the module's functions alone.
             let directive = unit.file.text[directive.span.clone()].trim_end_matches(';');
             if directive.starts_with("diagnostic") {
-                let _ = writeln!(text, "@{directive}");
+                let _ = writeln!(out, "@{directive}");
             }
         }
-        text.push_str(&apply(&unit.file.text, item.doc_start..item.span.end, edits));
-        text.push('\n');
-        text
+        apply(&unit.file.text, item.doc_start..item.span.end, &mut self.edits, out);
+        out.push('\n');
     }
 
-    fn combined(&mut self, planned: &Planned, stub: naga::Handle<naga::Function>, rule: Combine, slot: &str) -> String {
+    fn combined(&mut self, planned: &Planned, stub: naga::Handle<naga::Function>, rule: Combine, slot: &str, out: &mut String) {
         let plan = self.plan;
         let unit = &plan.homes[planned.home].unit;
         let ir = &unit.ir.functions[stub];
@@ -303,7 +302,7 @@ impl Writer<'_> {
         // The stub's text stands in the composed text; its header is the signature.
         let header = unit.composed.text.get(span).and_then(|t| t.split('{').next()).unwrap_or_default();
         let parameters = header.split_once('(').map_or("", |(_, rest)| rest).trim_end();
-        let names: Vec<String> = ir.arguments.iter().map(|a| a.name.clone().unwrap_or_default()).collect();
+        let names: Vec<&str> = ir.arguments.iter().map(|a| a.name.as_deref().unwrap_or_default()).collect();
         let calls: Vec<&str> = planned.targets.iter().map(|&t| plan.functions[t].name.as_str()).collect();
         let body = match rule {
             Combine::Sum | Combine::Product => {
@@ -312,7 +311,7 @@ impl Writer<'_> {
                 calls.iter().map(|c| format!("{c}({all})")).collect::<Vec<_>>().join(sign)
             }
             Combine::Chain => {
-                let first = names.first().cloned().unwrap_or_default();
+                let first = names.first().copied().unwrap_or_default().to_owned();
                 let rest: String = names.iter().skip(1).map(|n| format!(", {n}")).collect();
                 calls.iter().fold(first, |inner, call| format!("{call}({inner}{rest})"))
             }
@@ -321,99 +320,96 @@ impl Writer<'_> {
         let place = plan.homes[planned.home]
             .instance
             .map_or("", |i| plan.tree.nodes[plan.instances.list[i].node].path.as_str());
-        format!(
+        // Infallible: writing to a string.
+        let _ = write!(
+            out,
             "// {place}.{slot}: {rule:?} of {}\nfn {}({parameters} {{\n    return {body};\n}}\n",
             calls.len(),
             planned.name
-        )
+        );
     }
 
     /// The structs that a signature names.
     fn signature_types(&mut self, home: usize, header: &str) {
-        let scan = crate::parse::lex::lex(header);
-        let words: Vec<String> = scan.iter().map(|t| header[t.range()].to_owned()).collect();
-        for word in words {
-            if let Some(Origin::Interface(category)) = self.plan.homes[home].unit.origin(&word)
+        for token in crate::parse::lex::lex(header) {
+            let word = &header[token.range()];
+            if let Some(Origin::Interface(category)) = self.plan.homes[home].unit.origin(word)
                 && let Some(declared) = self.plan.interface_home(category)
             {
-                self.want(declared, &word);
+                self.want_named(declared, word);
             }
         }
     }
 
     /// New names for what the living text of an item refers to.
-    fn references(&mut self, home: usize, item: &Item, function: Option<(&Planned, &[Range<usize>])>) -> Vec<Edit> {
-        let plan = self.plan;
-        let unit = std::sync::Arc::clone(&plan.homes[home].unit);
-        let text = &unit.file.text;
-        let is_dead = |start: usize| function.is_some_and(|(_, dead)| dead.iter().any(|r| r.contains(&start)));
-        let mut edits = Vec::new();
-        let mut params: HashMap<usize, (&str, Range<usize>)> = HashMap::default();
-        for (name, range) in param_uses(text, &unit.scan) {
-            params.insert(range.start, (name, range));
-        }
-        for reference in &item.references {
-            let token = unit.scan.tokens[reference.token];
-            if is_dead(token.start as usize) {
-                continue;
-            }
-            let name = &text[token.range()];
-            if let (Some(Origin::Params) | None, Some((param, range))) = (unit.origin(name), params.get(&(token.start as usize))) {
-                if let Some(edit) = self.param(home, param, range.clone()) {
-                    edits.push(edit);
-                }
-                continue;
-            }
-            if let Some(new) = self.target(home, name, function.map(|(p, _)| p))
-                && new != name
-            {
-                edits.push((token.range(), new));
-            }
-        }
-        edits
-    }
-
-    fn param(&mut self, home: usize, param: &str, range: Range<usize>) -> Option<Edit> {
-        let unit = &self.plan.homes[home].unit;
-        if unit.needs.uniforms.contains_key(param) {
-            let (block, member) = self.params.get(&(home, param.to_owned()))?;
-            let group = GROUPS[self.plan.blocks[*block].group as usize];
-            return Some((range, format!("{group}_params.{member}")));
-        }
-        let home = self.plan.shared_home(home);
-        let name = constant_name(param);
-        self.want(home, &name);
-        Some((range, self.plan.names.get(&(home, name))?.clone()))
-    }
-
-    /// Emitted name of what a word stands for; `None` for words of the language.
-    fn target(&mut self, home: usize, name: &str, caller: Option<&Planned>) -> Option<String> {
+    fn references(&mut self, home: usize, item: usize, function: Option<&'p Planned>) {
         let plan = self.plan;
         let unit = &plan.homes[home].unit;
-        if let Some(handle) = unit.functions.get(name) {
-            return Some(plan.functions[*caller?.calls.get(handle)?].name.clone());
-        }
-        let (declared, is_item) = match unit.origin(name)? {
-            Origin::Own => {
-                let kind = unit.scan.item(name)?.kind;
-                let own = matches!(kind, ItemKind::Variable | ItemKind::Override);
-                (if own { home } else { plan.shared_home(home) }, true)
+        let text = &unit.file.text;
+        for mention in &unit.mentions[item] {
+            if self.dead.iter().any(|range| range.contains(&mention.range.start)) {
+                continue;
             }
-            Origin::Interface(category) => (plan.interface_home(category)?, true),
-            Origin::Instances => (if name == "Instance" { plan.shared_home(home) } else { home }, true),
-            Origin::Slot { .. } | Origin::Offered { .. } | Origin::Params | Origin::Param(_) => (home, false),
-        };
-        if is_item {
-            self.want(declared, name);
+            let old = &text[mention.range.clone()];
+            let new = self.target(home, old, &mention.meaning, function);
+            if let Some(new) = new
+                && new != old
+            {
+                self.edits.push((mention.range.clone(), new));
+            }
         }
-        plan.names.get(&(declared, name.to_owned())).cloned()
+    }
+
+    /// Emitted name of what a word stands for.
+    fn target(&mut self, home: usize, name: &str, meaning: &Meaning, caller: Option<&'p Planned>) -> Option<Cow<'p, str>> {
+        let plan = self.plan;
+        let unit = &plan.homes[home].unit;
+        let emitted = match meaning {
+            Meaning::Uniform(index) => {
+                let member = self.params[home].get(*index).filter(|name| !name.is_empty())?;
+                return Some(member.clone().into());
+            }
+            &Meaning::Constant(index) => {
+                let home = plan.shared_home(home);
+                self.want(home, index);
+                plan.names.of_added(home, index)
+            }
+            Meaning::Function(function) => Some(plan.functions[caller?.calls.get(*function)?].name.as_str()),
+            &Meaning::Own { item, instanced } => {
+                let home = if instanced { home } else { plan.shared_home(home) };
+                self.want(home, added(unit) + item);
+                plan.names.of_item(home, item)
+            }
+            Meaning::Interface { category, name } => {
+                let home = plan.interface_home(category)?;
+                self.want_named(home, name);
+                plan.name(home, name)
+            }
+            Meaning::InstanceType => {
+                let home = plan.shared_home(home);
+                self.want(home, added(unit) - 2);
+                plan.names.of_added(home, added(unit) - 2)
+            }
+            Meaning::Instances => {
+                self.want(home, added(unit) - 1);
+                plan.names.of_added(home, added(unit) - 1)
+            }
+            Meaning::Other => plan.name(home, name),
+        };
+        emitted.map(Cow::Borrowed)
     }
 }
 
-/// The text of a range with the edits made. Edits inside a removed stretch go with it.
-fn apply(text: &str, range: Range<usize>, mut edits: Vec<Edit>) -> String {
+fn gap(out: &mut String, kind: ItemKind) {
+    let flat = matches!(kind, ItemKind::Constant | ItemKind::Override | ItemKind::Variable | ItemKind::Alias);
+    if !flat || out.ends_with("}\n") {
+        out.push('\n');
+    }
+}
+
+/// Writes the text of a range with the edits made. Edits inside a removed stretch go with it.
+fn apply(text: &str, range: Range<usize>, edits: &mut [Edit], out: &mut String) {
     edits.sort_by_key(|(a, _)| (a.start, std::cmp::Reverse(a.end)));
-    let mut out = String::with_capacity(range.len());
     let mut at = range.start;
     for (span, new) in edits {
         if span.start < at || span.end > range.end {
@@ -422,9 +418,8 @@ fn apply(text: &str, range: Range<usize>, mut edits: Vec<Edit>) -> String {
             continue;
         }
         out.push_str(&text[at..span.start]);
-        out.push_str(&new);
+        out.push_str(new);
         at = span.end;
     }
     out.push_str(&text[at..range.end]);
-    out
 }

@@ -8,7 +8,7 @@ impl Linker<'_> {
     /// The linked type of a unit's type.
     pub fn ty(&mut self, home: usize, handle: Handle<Type>) -> Handle<Type> {
         let home = self.plan.shared_home(home);
-        if let Some(&done) = self.copied[home].types.get(&handle) {
+        if let Some(done) = self.copied[home].types.get(handle) {
             return done;
         }
         let plan = self.plan;
@@ -79,7 +79,7 @@ impl Linker<'_> {
             return done;
         };
         let s = &plan.structs.list[id];
-        let name = plan.names.get(&(s.home, s.name.clone())).unwrap_or(&s.name).clone();
+        let name = plan.name(s.home, &s.name).unwrap_or(&s.name).to_owned();
         let kept: Vec<StructMember> = members
             .iter()
             .enumerate()

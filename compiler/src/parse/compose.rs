@@ -478,17 +478,15 @@ pub fn constant_name(param: &str) -> String {
 
 /// All `params.x` of a text: the parameter's name and the bytes of the three tokens.
 pub fn param_uses<'t>(text: &'t str, scan: &Scan) -> Vec<(&'t str, Range<usize>)> {
-    let mut uses = Vec::new();
-    for item in &scan.items {
-        for reference in &item.references {
-            let [params, dot, name] = match scan.tokens.get(reference.token..reference.token + 3) {
-                Some(&[a, b, c]) => [a, b, c],
-                _ => continue,
-            };
-            if &text[params.range()] == "params" && dot.is(b'.') && name.kind == Kind::Word {
-                uses.push((&text[name.range()], params.start as usize..name.end as usize));
-            }
-        }
-    }
-    uses
+    let references = scan.items.iter().flat_map(|item| &item.references);
+    references.filter_map(|reference| param_use(text, scan, reference.token)).collect()
+}
+
+/// The same of one token.
+pub fn param_use<'t>(text: &'t str, scan: &Scan, token: usize) -> Option<(&'t str, Range<usize>)> {
+    let &[params, dot, name] = scan.tokens.get(token..token + 3)? else {
+        return None;
+    };
+    let is_param = &text[params.range()] == "params" && dot.is(b'.') && name.kind == Kind::Word;
+    is_param.then(|| (&text[name.range()], params.start as usize..name.end as usize))
 }

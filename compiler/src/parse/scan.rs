@@ -62,6 +62,8 @@ pub struct Item {
     pub tokens: Range<usize>,
     /// Bytes of the same.
     pub span: Range<usize>,
+    /// Line of its first byte, from 1.
+    pub line: usize,
     /// First byte of the comment lines that stand directly above, or of the item where there are none.
     pub doc_start: usize,
     /// Words that refer to names outside the item.
@@ -95,6 +97,17 @@ impl Scan {
         self.by_name.get(name).map(|&index| &self.items[index])
     }
 
+    /// Directives.
+    pub fn directives(&self) -> impl Iterator<Item = &Item> {
+        // They stand before everything else.
+        self.items.iter().take_while(|item| item.kind == ItemKind::Directive)
+    }
+
+    /// Its index in [`Scan::items`].
+    pub fn item_index(&self, name: &str) -> Option<usize> {
+        self.by_name.get(name).copied()
+    }
+
     /// Bytes of a range of tokens; empty for an empty range.
     pub fn bytes(&self, tokens: &Range<usize>) -> Range<usize> {
         match (
@@ -110,7 +123,7 @@ impl Scan {
 /// Scans text.
 pub fn scan(text: &str) -> Scan {
     let tokens = lex(text);
-    let mut items = Vec::new();
+    let mut items: Vec<Item> = Vec::new();
     let mut at = 0;
     while at < tokens.len() {
         if tokens[at].is(b';') {
@@ -122,6 +135,12 @@ pub fn scan(text: &str) -> Scan {
             items.push(item);
         }
         at = end;
+    }
+    let (mut line, mut counted) = (1, 0);
+    for item in &mut items {
+        line += text[counted..item.span.start].bytes().filter(|&b| b == b'\n').count();
+        counted = item.span.start;
+        item.line = line;
     }
     let mut by_name = HashMap::default();
     for (index, item) in items.iter().enumerate().filter(|(_, i)| !i.name.is_empty()) {
@@ -206,6 +225,7 @@ fn scan_item(text: &str, tokens: &[Token], range: Range<usize>) -> Option<Item> 
         kind,
         name,
         name_span,
+        line: 0,
         doc_start: doc_start(text, span.start),
         span,
         tokens: range.clone(),

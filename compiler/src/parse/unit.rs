@@ -1,6 +1,7 @@
 //! One text, parsed and checked alone.
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -9,7 +10,12 @@ use naga::{Handle, TypeInner};
 
 use super::checks;
 use super::compose::{Composed, Interface, Needs, Origin, compose};
-use super::scan::Scan;
+use super::cuts::{Cuts, cuts};
+use super::facts::{Facts, facts};
+use super::filter::{Filter, word_hash};
+use super::mentions::{Mention, mentions};
+use super::pure::droppable;
+use super::scan::{Item, Scan};
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::upstream::guarded;
 
@@ -39,6 +45,8 @@ pub struct Unit {
     pub info: naga::valid::ModuleInfo,
     /// The category whose interface this unit is; `None` for a module's unit.
     pub interface: Option<String>,
+    /// Categories whose interfaces it names.
+    pub interfaces: BTreeSet<String>,
     /// Functions by name.
     pub functions: HashMap<String, Handle<naga::Function>>,
     /// Whether a function depends on more than its text: on slots, parameters, resources. By handle.
@@ -49,8 +57,20 @@ pub struct Unit {
     pub fixed_structs: HashSet<StructKey>,
     /// Words that linked names must not be: locals, and words of the language that the text uses.
     pub words: HashSet<String>,
-    /// Results of calls and other statements, with their places: by function handle, then by entry point.
-    pub results: Vec<Vec<(Handle<naga::Expression>, Range<usize>)>>,
+    /// The same, for asking quickly.
+    pub words_filter: Filter,
+    /// Facts of the functions: by function handle, then by entry point.
+    pub facts: Vec<Facts>,
+    /// Their text, as far as it may go: by function handle, then by entry point.
+    pub cuts: Vec<Cuts>,
+    /// What each item of the author's file mentions.
+    pub mentions: Vec<Vec<Mention>>,
+    /// Whether a call of a function, if it is pure, may go when nobody reads its result. By handle.
+    pub droppable: Vec<bool>,
+    /// The variable `params`, where there are uniform parameters.
+    pub params: Option<Handle<naga::GlobalVariable>>,
+    /// The variable `instances`, where there are fields of instances.
+    pub instances: Option<Handle<naga::GlobalVariable>>,
     /// Deepest nesting of blocks, longest chain of calls: how deep a walk over it may recurse.
     pub depth: (usize, usize),
 }
@@ -102,7 +122,14 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     let mut unit = Unit {
         fixed_structs: HashSet::default(),
         words: HashSet::default(),
-        results: Vec::new(),
+        words_filter: Filter::default(),
+        interfaces: BTreeSet::new(),
+        facts: Vec::new(),
+        cuts: Vec::new(),
+        mentions: Vec::new(),
+        droppable: Vec::new(),
+        params: None,
+        instances: None,
         dependent: Vec::new(),
         depth: depth(&ir),
         file,
@@ -118,13 +145,16 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     unit.fixed_structs = fixed_structs(&unit);
     unit.dependent = dependents(&unit);
     unit.words = words(&unit);
-    let functions = unit
-        .ir
-        .functions
-        .iter()
-        .map(|(_, f)| f)
-        .chain(unit.ir.entry_points.iter().map(|e| &e.function));
-    unit.results = functions.map(results).collect();
+    unit.words.iter().for_each(|word| unit.words_filter.insert(word_hash(word)));
+    unit.interfaces = interfaces(&unit);
+    unit.facts = facts(&unit);
+    unit.cuts = functions_of(&unit)
+        .map(|(f, item)| item.map_or_else(Cuts::default, |item| cuts(&unit, f, item)))
+        .collect();
+    unit.mentions = unit.scan.items.iter().map(|item| mentions(&unit, item)).collect();
+    unit.droppable = unit.ir.functions.iter().map(|(_, f)| droppable(&unit.ir, f)).collect();
+    unit.params = variable(&unit, "params", &Origin::Params);
+    unit.instances = variable(&unit, "instances", &Origin::Instances);
     Ok(unit)
 }
 
@@ -324,23 +354,27 @@ fn words(unit: &Unit) -> HashSet<String> {
     words
 }
 
-fn results(function: &naga::Function) -> Vec<(Handle<naga::Expression>, Range<usize>)> {
-    use naga::Expression as E;
-    let is_result = |e: &E| {
-        matches!(
-            e,
-            E::CallResult(_)
-                | E::AtomicResult { .. }
-                | E::WorkGroupUniformLoadResult { .. }
-                | E::RayQueryProceedResult
-                | E::SubgroupBallotResult
-                | E::SubgroupOperationResult { .. }
-        )
-    };
-    let found = function.expressions.iter().filter(|(_, e)| is_result(e));
-    found
-        .map(|(h, _)| (h, function.expressions.get_span(h).to_range().unwrap_or_default()))
-        .collect()
+fn interfaces(unit: &Unit) -> BTreeSet<String> {
+    let named = unit.composed.names.values().filter_map(|origin| match origin {
+        Origin::Interface(category) | Origin::Offered { interface: category, .. } => Some(category),
+        _ => None,
+    });
+    let slots = unit.needs.slots.iter().map(|slot| &slot.interface);
+    named.chain(slots).chain(&unit.needs.implements).cloned().collect()
+}
+
+/// Functions by handle, then entry points, with their items in the author's text.
+fn functions_of(unit: &Unit) -> impl Iterator<Item = (&naga::Function, Option<&Item>)> {
+    let functions = unit.ir.functions.iter();
+    let functions = functions.map(|(_, f)| (f, f.name.as_deref().unwrap_or_default()));
+    let entries = unit.ir.entry_points.iter().map(|e| (&e.function, e.name.as_str()));
+    functions.chain(entries).map(|(f, name)| (f, unit.scan.item(name)))
+}
+
+fn variable(unit: &Unit, name: &str, origin: &Origin) -> Option<Handle<naga::GlobalVariable>> {
+    let mut variables = unit.ir.global_variables.iter();
+    let (handle, _) = variables.find(|(_, global)| global.name.as_deref() == Some(name))?;
+    (unit.origin(name) == Some(origin)).then_some(handle)
 }
 
 fn named_structs(ir: &naga::Module, composed: &Composed) -> HashMap<Handle<naga::Type>, StructKey> {

@@ -2,13 +2,13 @@
 
 use rustc_hash::FxHashSet as HashSet;
 
-use naga::{AddressSpace, Expression, GlobalVariable, Handle};
+use naga::{AddressSpace, GlobalVariable, Handle};
 
 use super::Plan;
 use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::Resource;
-use crate::parse::{Origin, Unit};
+use crate::parse::Origin;
 
 /// Names of the bind groups' parameter blocks, by group: frame, lights and shadows, material, pass.
 pub const GROUPS: [&str; 4] = ["frame", "light", "material", "pass"];
@@ -22,6 +22,8 @@ pub struct PlannedGlobal {
     pub handle: Handle<GlobalVariable>,
     /// Group and binding; `None` for private and workgroup variables.
     pub binding: Option<(u32, u32)>,
+    /// What its manifest says of it; nothing for `instances` and for private and workgroup variables.
+    pub declared: Option<Resource>,
 }
 
 /// The uniform parameters of one group.
@@ -48,18 +50,6 @@ pub struct BlockMember {
     pub name: String,
 }
 
-/// Whether a variable is the unit's `params`.
-pub fn is_params(unit: &Unit, global: Handle<GlobalVariable>) -> bool {
-    let name = unit.ir.global_variables[global].name.as_deref();
-    name == Some("params") && matches!(unit.origin("params"), Some(Origin::Params))
-}
-
-/// Whether a variable is the unit's `instances`.
-pub fn is_instances(unit: &Unit, global: Handle<GlobalVariable>) -> bool {
-    let name = unit.ir.global_variables[global].name.as_deref();
-    name == Some("instances") && matches!(unit.origin("instances"), Some(Origin::Instances))
-}
-
 /// Numbers what is reached: in each group the parameters first, then the interfaces' resources, then those of the
 /// instances in tree order, each in the order of its text.
 pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
@@ -82,22 +72,29 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
     for home in order {
         let unit = &plan.homes[home].unit;
         for (handle, global) in unit.ir.global_variables.iter() {
-            if !reached.contains(&(home, handle)) || is_params(unit, handle) {
+            if !reached.contains(&(home, handle)) || unit.params == Some(handle) {
                 continue;
             }
             let bound = matches!(
                 global.space,
                 AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Handle
             );
+            let mut declared = None;
             // Only a text that is complete in itself brings bindings.
             let mut binding = global.binding.as_ref().map(|b| (b.group, b.binding));
             if bound && binding.is_none() {
-                let group = group_of(catalog, plan, home, handle)?;
+                let group;
+                (group, declared) = place(catalog, plan, home, handle)?;
                 let number = &mut next[group as usize];
                 binding = Some((group, *number));
                 *number += 1;
             }
-            plan.globals.push(PlannedGlobal { home, handle, binding });
+            plan.globals.push(PlannedGlobal {
+                home,
+                handle,
+                binding,
+                declared,
+            });
         }
     }
     Ok(())
@@ -107,10 +104,10 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
 fn reached(plan: &Plan) -> HashSet<(usize, Handle<GlobalVariable>)> {
     let mut reached = HashSet::default();
     for planned in &plan.functions {
-        let Some(function) = planned.ir(&plan.homes) else { continue };
-        for (handle, expression) in function.expressions.iter() {
-            if let (Expression::GlobalVariable(global), true) = (expression, planned.live[handle.index()]) {
-                reached.insert(declaring(plan, planned.home, *global));
+        let Some(facts) = planned.facts(&plan.homes) else { continue };
+        for &(handle, global) in &facts.globals {
+            if planned.live[handle.index()] {
+                reached.insert(declaring(plan, planned.home, global));
             }
         }
     }
@@ -161,7 +158,7 @@ fn block_members(catalog: &Catalog, plan: &Plan, group: u32) -> Vec<BlockMember>
 }
 
 /// What a home's manifest says of a variable.
-pub fn declared<'c>(catalog: &'c Catalog, plan: &'c Plan, home: usize, name: &str) -> Option<&'c Resource> {
+fn declared<'c>(catalog: &'c Catalog, plan: &'c Plan, home: usize, name: &str) -> Option<&'c Resource> {
     match plan.homes[home].instance {
         Some(instance) => plan.tree.nodes[plan.instances.list[instance].node]
             .module
@@ -176,7 +173,8 @@ pub fn declared<'c>(catalog: &'c Catalog, plan: &'c Plan, home: usize, name: &st
     }
 }
 
-fn group_of(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVariable>) -> Result<u32, Report> {
+/// The bind group of a resource, and what its manifest says of it.
+fn place(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVariable>) -> Result<(u32, Option<Resource>), Report> {
     let unit = &plan.homes[home].unit;
     let name = unit.ir.global_variables[handle].name.as_deref().unwrap_or_default();
     let category = match plan.homes[home].instance {
@@ -184,8 +182,8 @@ fn group_of(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVa
         None => unit.interface.as_deref(),
     };
     let group = category.and_then(|c| catalog.category(c)).map_or(3, |c| c.manifest.group);
-    if is_instances(unit, handle) {
-        return Ok(group);
+    if unit.instances == Some(handle) {
+        return Ok((group, None));
     }
     let Some(resource) = declared(catalog, plan, home, name) else {
         let span = unit.scan.item(name).map_or(0..0, |i| i.name_span.clone());
@@ -197,5 +195,5 @@ fn group_of(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVa
         .note("the host must know how to fill it: add it to `resources` of the manifest beside this file")
         .into());
     };
-    Ok(resource.group.unwrap_or(group))
+    Ok((resource.group.unwrap_or(group), Some(resource.clone())))
 }

@@ -1,45 +1,58 @@
 //! What of the reached functions is alive: expressions that something depends on, struct members that somebody reads.
 //!
-//! A store into a member that nobody reads is dead, and so is what only it needed; a vertex stage's outputs are alive
-//! where the fragment stage reads them. The analysis starts with no member alive and repeats until nothing is added.
+//! A store into a member that nobody reads is dead, and so is what only it needed. The analysis starts with no member alive. A
+//! function is walked once, when a living call first reaches it; what depends on a member that is not alive waits for it, and is
+//! looked at again when, and only when, something reads that member.
 
-use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
-use std::ops::Range;
+use naga::{Expression, Handle};
+use rustc_hash::FxHashMap as HashMap;
 
-use naga::{Binding, Block, Expression, Handle, ShaderStage, Statement, Type, TypeInner};
-
-use super::operands::{expression_operands, statement_operands};
-use super::{Body, Choice, Home, Plan, Planned, Structs, can_go, choice, is_dead_store, reachable, struct_of};
+use super::stages::{Output, outputs};
+use super::{Body, Home, Plan, Planned, Structs, struct_of};
+use crate::parse::{Action, Call, Facts, Store, Unit, expression_operands};
 
 /// Finds out what is alive and writes it into the plan.
 pub fn analyse(plan: &mut Plan) {
     keep_local_constants(plan);
+    let outputs = outputs(plan);
+    let functions = std::mem::take(&mut plan.functions);
+    let mut walk = Walk {
+        homes: &plan.homes,
+        functions: &functions,
+        states: functions.iter().map(|_| State::default()).collect(),
+        structs: &mut plan.structs,
+        params: &mut plan.live_params,
+        queue: Vec::new(),
+        waiting: HashMap::default(),
+        woken: Vec::new(),
+        stack: Vec::new(),
+    };
+    for (id, planned) in functions.iter().enumerate() {
+        if matches!(planned.body, Body::Entry(_)) {
+            walk.need(id);
+        }
+    }
     loop {
-        settle(plan);
-        if !keep_one_member(plan) {
+        walk.settle();
+        if !walk.link_stages(&outputs) && !walk.keep_one_member() {
             break;
         }
+    }
+    let states = walk.states;
+    plan.functions = functions;
+    for (planned, state) in plan.functions.iter_mut().zip(states) {
+        planned.live = state.live;
     }
     drop_unneeded(plan);
 }
 
 /// A `const` inside a function leaves no trace in the IR, but stays in the text: its structs keep all their members.
 fn keep_local_constants(plan: &mut Plan) {
-    let mut kept = HashSet::default();
+    let mut kept = Vec::new();
     for planned in &plan.functions {
         let unit = &plan.homes[planned.home].unit;
-        let Some(item) = unit.scan.item(planned.source_name(&plan.homes)) else {
-            continue;
-        };
-        let word = |at: usize| &unit.file.text[unit.scan.tokens[at].range()];
-        for reference in item.references.iter().filter(|r| item.body.contains(&r.token)) {
-            let mut statement = (item.body.start..reference.token).rev().take_while(|&at| word(at) != ";");
-            if !statement.any(|at| word(at) == "const") {
-                continue;
-            }
-            for (&ty, _) in unit.structs.iter().filter(|(_, key)| key.name == word(reference.token)) {
-                used_structs(&plan.structs, &unit.ir, planned.home, ty, &mut kept);
-            }
+        for &ty in planned.facts(&plan.homes).iter().flat_map(|facts| &facts.in_constants) {
+            used_structs(&plan.structs, &unit.ir, planned.home, ty, &mut |id| kept.push(id));
         }
     }
     kept.into_iter().for_each(|id| plan.structs.list[id].fixed = true);
@@ -57,14 +70,15 @@ fn drop_unneeded(plan: &mut Plan) {
     }
     let mut functions: Vec<Option<Planned>> = std::mem::take(&mut plan.functions).into_iter().map(Some).collect();
     plan.functions = order.iter().filter_map(|&old| functions[old].take()).collect();
+    let mut callees = Vec::new();
     for caller in 0..plan.functions.len() {
         let planned = &mut plan.functions[caller];
-        planned.calls.retain(|_, id| index[*id].is_some());
-        let ids = planned.calls.values_mut().chain(&mut planned.targets);
-        ids.for_each(|id| *id = index[*id].unwrap_or(*id));
-        let mut callees: Vec<usize> = planned.calls.values().chain(&planned.targets).copied().collect();
+        planned.calls.renumber(&index);
+        planned.targets.iter_mut().for_each(|id| *id = index[*id].unwrap_or(*id));
+        callees.clear();
+        callees.extend(planned.calls.ids().chain(planned.targets.iter().copied()));
         callees.sort_unstable();
-        for callee in callees {
+        for &callee in &callees {
             plan.functions[callee].caller.get_or_insert(caller);
         }
     }
@@ -76,355 +90,193 @@ fn by_calls(plan: &Plan, id: usize, index: &mut [Option<usize>], order: &mut Vec
         return;
     }
     let planned = &plan.functions[id];
-    let mut called = planned.targets.clone();
-    if let Some(function) = planned.ir(&plan.homes) {
-        living_calls(plan, planned, function, &function.body, &mut called);
+    let unit = &plan.homes[planned.home].unit;
+    for &target in &planned.targets {
+        by_calls(plan, target, index, order);
     }
-    for callee in called {
-        by_calls(plan, callee, index, order);
+    for call in planned.facts(&plan.homes).iter().flat_map(|facts| &facts.calls) {
+        let read = call.result.is_some_and(|r| planned.live[r.index()]);
+        if let Some(callee) = planned.calls.get(call.callee)
+            && (read || planned.is_kept(&plan.functions, unit, call.callee))
+        {
+            by_calls(plan, callee, index, order);
+        }
     }
     index[id] = Some(order.len());
     order.push(id);
 }
 
-/// What the calls that stay lead to, in the order of the text.
-fn living_calls(plan: &Plan, planned: &Planned, function: &naga::Function, block: &Block, called: &mut Vec<usize>) {
-    let unit = &plan.homes[planned.home].unit;
-    for (statement, _) in reachable(&unit.ir, function, block) {
-        match statement {
-            Statement::Call { function, result, .. } => {
-                let read = result.is_some_and(|r| planned.live[r.index()]);
-                if read || !can_go(&plan.functions, planned, unit, *function) {
-                    called.extend(planned.calls.get(function));
-                }
-            }
-            Statement::Block(inner) => living_calls(plan, planned, function, inner, called),
-            Statement::If { condition, accept, reject } => {
-                let choice = choice(&unit.ir, function, *condition, accept, reject);
-                if choice != Choice::Reject {
-                    living_calls(plan, planned, function, accept, called);
-                }
-                if choice != Choice::Accept {
-                    living_calls(plan, planned, function, reject, called);
-                }
-            }
-            Statement::Switch { cases, .. } => cases.iter().for_each(|c| living_calls(plan, planned, function, &c.body, called)),
-            Statement::Loop { body, continuing, .. } => {
-                living_calls(plan, planned, function, body, called);
-                living_calls(plan, planned, function, continuing, called);
-            }
-            _ => {}
-        }
-    }
-}
-
-fn settle(plan: &mut Plan) {
-    loop {
-        let mut changed = false;
-        // Callers first: callees precede them, so whatever a living call reaches is looked at in the same round.
-        for index in (0..plan.functions.len()).rev() {
-            if !plan.functions[index].needed {
-                continue;
-            }
-            if plan.functions[index].ir(&plan.homes).is_none() {
-                for target in plan.functions[index].targets.clone() {
-                    plan.functions[target].needed = true;
-                }
-            }
-            let Some(function) = plan.functions[index].ir(&plan.homes) else {
-                continue;
-            };
-            let Some(info) = plan.functions[index].info(&plan.homes) else {
-                continue;
-            };
-            let mut walker = Walker {
-                homes: &plan.homes,
-                functions: &plan.functions,
-                planned: &plan.functions[index],
-                pure_calls: HashMap::default(),
-                called: Vec::new(),
-                function,
-                results: plan.functions[index].results(&plan.homes),
-                info,
-                structs: &mut plan.structs,
-                params: &mut plan.live_params,
-                live: vec![false; function.expressions.len()],
-                read: vec![false; function.expressions.len()],
-                reached: vec![false; function.expressions.len()],
-                stack: Vec::new(),
-                changed: false,
-            };
-            walker.block(&function.body);
-            walker.keep_lets_with_calls();
-            changed |= walker.changed;
-            let (live, called) = (walker.live, walker.called);
-            plan.functions[index].live = live;
-            for callee in called {
-                plan.functions[callee].needed = true;
-            }
-        }
-        changed |= link_stages(plan);
-        if !changed {
-            break;
-        }
-    }
-}
-
-/// Vertex outputs are alive where a fragment entry point of the plan reads their location.
-fn link_stages(plan: &mut Plan) -> bool {
-    let mut wanted = HashSet::default();
-    let mut outputs = Vec::new();
-    let mut changed = false;
-    for planned in &plan.functions {
-        let Body::Entry(index) = planned.body else { continue };
-        let unit = &plan.homes[planned.home].unit;
-        let entry = &unit.ir.entry_points[index];
-        if entry.stage == ShaderStage::Fragment {
-            for argument in &entry.function.arguments {
-                for (id, member, binding) in bound_members(plan, planned.home, argument.ty) {
-                    if let (Some(Binding::Location { location, .. }), true) = (binding, plan.structs.is_live(id, member)) {
-                        wanted.insert(location);
-                    }
-                }
-            }
-        }
-        if let Some(result) = &entry.function.result {
-            let members = bound_members(plan, planned.home, result.ty);
-            outputs.extend(members.into_iter().map(|(id, member, binding)| (entry.stage, id, member, binding)));
-        }
-    }
-    for (stage, id, member, binding) in outputs {
-        let unread =
-            matches!(binding, Some(Binding::Location { location, .. }) if stage == ShaderStage::Vertex && !wanted.contains(&location));
-        if !unread {
-            changed |= plan.structs.enliven(id, member);
-        }
-    }
-    changed
-}
-
-fn bound_members(plan: &Plan, home: usize, ty: Handle<Type>) -> Vec<(usize, u32, Option<Binding>)> {
-    let unit = &plan.homes[home].unit;
-    match (&unit.ir.types[ty].inner, plan.structs.id(home, ty)) {
-        (TypeInner::Struct { members, .. }, Some(id)) => members
-            .iter()
-            .enumerate()
-            .map(|(index, m)| (id, index as u32, m.binding.clone()))
-            .collect(),
-        _ => Vec::new(),
-    }
-}
-
-/// WGSL has no empty structs: one that is used keeps a member, a built-in value rather than a location.
-fn keep_one_member(plan: &mut Plan) -> bool {
-    let mut used = HashSet::default();
-    for planned in plan.functions.iter().filter(|f| f.needed) {
-        let unit = &plan.homes[planned.home].unit;
-        let Some(function) = planned.ir(&plan.homes) else { continue };
-        let types = function.arguments.iter().map(|a| a.ty).chain(function.result.iter().map(|r| r.ty));
-        for ty in types.chain(function.local_variables.iter().map(|(_, l)| l.ty)) {
-            used_structs(&plan.structs, &unit.ir, planned.home, ty, &mut used);
-        }
-        for (handle, expression) in function.expressions.iter() {
-            let ty = match *expression {
-                Expression::GlobalVariable(global) => unit.ir.global_variables[global].ty,
-                Expression::Compose { ty, .. } | Expression::ZeroValue(ty) => ty,
-                _ => continue,
-            };
-            if planned.live[handle.index()] {
-                used_structs(&plan.structs, &unit.ir, planned.home, ty, &mut used);
-            }
-        }
-    }
-    let mut changed = false;
-    let mut used: Vec<usize> = used.into_iter().collect();
-    used.sort_unstable();
-    for id in used {
-        let s = &plan.structs.list[id];
-        if s.fixed || s.live.iter().any(|&l| l) {
-            continue;
-        }
-        let ir = &plan.homes[s.home].unit.ir;
-        let declared = ir.types.iter().find_map(|(_, t)| match &t.inner {
-            TypeInner::Struct { members, .. } if t.name.as_deref() == Some(&s.name) => Some(members),
-            _ => None,
-        });
-        let builtin = declared.and_then(|m| m.iter().position(|m| matches!(m.binding, Some(Binding::BuiltIn(_)))));
-        changed |= plan.structs.enliven(id, builtin.unwrap_or(0) as u32);
-    }
-    changed
-}
-
-fn used_structs(structs: &Structs, ir: &naga::Module, home: usize, ty: Handle<Type>, used: &mut HashSet<usize>) {
+/// The structs in a type.
+fn used_structs(structs: &Structs, ir: &naga::Module, home: usize, ty: Handle<naga::Type>, used: &mut impl FnMut(usize)) {
     match &ir.types[ty].inner {
-        TypeInner::Struct { members, .. } => {
+        naga::TypeInner::Struct { members, .. } => {
             if let Some(id) = structs.id(home, ty) {
-                used.insert(id);
+                used(id);
             }
             members.iter().for_each(|m| used_structs(structs, ir, home, m.ty, used));
         }
-        TypeInner::Array { base, .. } | TypeInner::Pointer { base, .. } => used_structs(structs, ir, home, *base, used),
+        naga::TypeInner::Array { base, .. } | naga::TypeInner::Pointer { base, .. } => used_structs(structs, ir, home, *base, used),
         _ => {}
     }
 }
 
-/// Callee and arguments of a call that can go.
-type PureCall<'a> = (Handle<naga::Function>, &'a [Handle<Expression>]);
-
-struct Walker<'a> {
-    homes: &'a [Home],
-    functions: &'a [Planned],
-    planned: &'a Planned,
-    /// Calls of pure functions by their result: they are alive where that is.
-    pure_calls: HashMap<Handle<Expression>, PureCall<'a>>,
-    /// Functions that living calls reach.
-    called: Vec<usize>,
-    function: &'a naga::Function,
-    results: &'a [(Handle<Expression>, Range<usize>)],
-    info: &'a naga::valid::FunctionInfo,
-    structs: &'a mut Structs,
-    params: &'a mut HashSet<(usize, u32)>,
+/// What is known so far of a function.
+#[derive(Default)]
+struct State {
+    /// Whether a living call reaches it.
+    needed: bool,
     /// Needed in the linked function.
     live: Vec<bool>,
     /// Its value is needed, not only its address for a store.
     read: Vec<bool>,
-    /// Results of statements, and expressions, that stand in branches that may be taken.
-    reached: Vec<bool>,
-    stack: Vec<Handle<Expression>>,
-    changed: bool,
 }
 
-impl<'a> Walker<'a> {
-    /// Something that acts beside giving a value stays where it stands, and so does the `let` around it, whoever reads it.
-    /// Comes behind the walk over the statements, which finds the pure calls that such a `let` also holds.
-    fn keep_lets_with_calls(&mut self) {
-        for &named in self.function.named_expressions.keys() {
-            if self.reached[named.index()] && self.holds_action(named) {
-                self.read(named);
+/// What waits for a struct's member to come alive.
+enum Waiting<'p> {
+    Store(usize, &'p Store),
+    Component(usize, Handle<Expression>),
+}
+
+struct Walk<'p> {
+    homes: &'p [Home],
+    functions: &'p [Planned],
+    states: Vec<State>,
+    structs: &'p mut Structs,
+    params: &'p mut rustc_hash::FxHashSet<(usize, u32)>,
+    /// Functions that are needed and not walked yet.
+    queue: Vec<usize>,
+    /// By struct and member.
+    waiting: HashMap<(usize, u32), Vec<Waiting<'p>>>,
+    /// Whose member has come alive.
+    woken: Vec<Waiting<'p>>,
+    stack: Vec<Handle<Expression>>,
+}
+
+impl<'p> Walk<'p> {
+    fn settle(&mut self) {
+        loop {
+            if let Some(id) = self.queue.pop() {
+                self.function(id);
+            } else if let Some(waiting) = self.woken.pop() {
+                match waiting {
+                    Waiting::Store(id, store) => self.store(id, store),
+                    Waiting::Component(id, handle) => self.read(id, handle),
+                }
+            } else {
+                return;
             }
         }
     }
 
-    /// Whether the text of an expression holds a call that cannot go, an atomic operation or the like.
-    fn holds_action(&self, handle: Handle<Expression>) -> bool {
-        let Some(span) = self.function.expressions.get_span(handle).to_range() else {
-            return false;
+    fn need(&mut self, id: usize) {
+        if !std::mem::replace(&mut self.states[id].needed, true) {
+            self.queue.push(id);
+        }
+    }
+
+    fn enliven(&mut self, id: usize, member: u32) -> bool {
+        let news = self.structs.enliven(id, member);
+        if news && let Some(waiting) = self.waiting.remove(&(id, member)) {
+            self.woken.extend(waiting);
+        }
+        news
+    }
+
+    fn unit(&self, id: usize) -> &'p Unit {
+        &self.homes[self.functions[id].home].unit
+    }
+
+    fn facts(&self, id: usize) -> Option<&'p Facts> {
+        self.functions[id].facts(self.homes)
+    }
+
+    fn function(&mut self, id: usize) {
+        let planned = &self.functions[id];
+        let (Some(facts), Some(function)) = (self.facts(id), planned.ir(self.homes)) else {
+            planned.targets.iter().for_each(|&target| self.need(target));
+            return;
         };
-        // `a && f()` is a branch in the IR, which stays with all that it calls.
-        let text = self.homes[self.planned.home]
-            .unit
-            .composed
-            .text
-            .get(span.clone())
-            .unwrap_or_default();
-        if text.contains("&&") || text.contains("||") {
-            return true;
-        }
-        self.results.iter().any(|(result, place)| {
-            let inside =
-                self.reached[result.index()] && result.index() <= handle.index() && span.start <= place.start && place.end <= span.end;
-            inside
-                && match self.function.expressions[*result] {
-                    Expression::CallResult(callee) => !self.can_go(callee),
-                    _ => true,
-                }
-        })
-    }
-
-    fn can_go(&self, callee: Handle<naga::Function>) -> bool {
-        can_go(self.functions, self.planned, &self.homes[self.planned.home].unit, callee)
-    }
-
-    fn call(&mut self, callee: Handle<naga::Function>) {
-        self.called.extend(self.planned.calls.get(&callee));
-    }
-
-    fn block(&mut self, block: &'a Block) {
-        for (statement, _) in reachable(&self.homes[self.planned.home].unit.ir, self.function, block) {
-            self.statement(statement);
+        self.states[id].live = vec![false; function.expressions.len()];
+        self.states[id].read = vec![false; function.expressions.len()];
+        facts.reads.iter().for_each(|&h| self.read(id, h));
+        facts.stores.iter().for_each(|store| self.store(id, store));
+        facts.calls.iter().for_each(|call| self.call(id, facts, call));
+        for &named in &facts.lets {
+            if self.acts(id, named) {
+                self.read(id, named);
+            }
         }
     }
 
-    fn statement(&mut self, statement: &'a Statement) {
-        match statement {
-            Statement::Emit(range) => range.clone().for_each(|h| self.reached[h.index()] = true),
-            Statement::Break | Statement::Continue | Statement::Kill | Statement::ControlBarrier(_) | Statement::MemoryBarrier(_) => {}
-            Statement::Block(inner) => self.block(inner),
-            Statement::If { condition, accept, reject } => {
-                match choice(&self.homes[self.planned.home].unit.ir, self.function, *condition, accept, reject) {
-                    Choice::Accept => self.block(accept),
-                    Choice::Reject => self.block(reject),
-                    Choice::Open => {
-                        self.read(*condition);
-                        self.block(accept);
-                        self.block(reject);
-                    }
-                }
-            }
-            Statement::Switch { selector, cases } => {
-                self.read(*selector);
-                cases.iter().for_each(|c| self.block(&c.body));
-            }
-            Statement::Loop {
-                body,
-                continuing,
-                break_if,
-            } => {
-                self.block(body);
-                self.block(continuing);
-                break_if.iter().for_each(|&b| self.read(b));
-            }
-            Statement::Return { value } => value.iter().for_each(|&v| self.read(v)),
-            Statement::Store { pointer, value } => {
-                let ir = &self.homes[self.planned.home].unit.ir;
-                if is_dead_store(self.planned.home, self.structs, self.function, self.info, ir, *pointer) {
-                    if !self.holds_action(*value) && !self.holds_action(*pointer) {
-                        return;
-                    }
-                    self.enliven_path(*pointer);
-                }
-                self.address(*pointer);
-                self.read(*value);
-            }
-            Statement::Call {
-                function,
-                arguments,
-                result,
-            } => {
-                result.iter().for_each(|r| self.reached[r.index()] = true);
-                if self.can_go(*function) {
-                    // Alive where its result is read, which is after this.
-                    if let Some(result) = result {
-                        self.pure_calls.insert(*result, (*function, arguments));
-                        if arguments.iter().any(|&a| self.holds_action(a)) {
-                            self.read(*result);
-                        }
-                    }
-                    return;
-                }
-                self.call(*function);
-                arguments.iter().for_each(|&a| self.read(a));
-                result.iter().for_each(|&r| self.read(r));
-            }
-            other => statement_operands(other, &mut |&h| {
-                self.reached[h.index()] = true;
-                self.read(h);
-            }),
+    /// Something that acts beside giving a value stays where it stands, and so does the `let` around it, whoever reads it.
+    fn acts(&self, id: usize, handle: Handle<Expression>) -> bool {
+        match self.facts(id).and_then(|facts| facts.actions.get(&handle)) {
+            None => false,
+            Some(Action::Always) => true,
+            Some(Action::Calls(callees)) => callees.iter().any(|&callee| !self.can_go(id, callee)),
         }
+    }
+
+    /// Whether a call may go where nobody reads its result.
+    fn can_go(&self, id: usize, callee: Handle<naga::Function>) -> bool {
+        let planned = self.functions[id].calls.get(callee);
+        planned.is_some_and(|callee_id| self.unit(id).droppable[callee.index()] && self.functions[callee_id].pure)
+    }
+
+    fn call(&mut self, id: usize, facts: &Facts, call: &Call) {
+        if self.can_go(id, call.callee) {
+            // Alive where its result is read. Without a result it goes.
+            if let Some(result) = call.result
+                && !facts.actions.is_empty()
+                && call.arguments.iter().any(|&a| self.acts(id, a))
+            {
+                self.read(id, result);
+            }
+            return;
+        }
+        if let Some(callee) = self.functions[id].calls.get(call.callee) {
+            self.need(callee);
+        }
+        call.arguments.iter().chain(&call.result).for_each(|&h| self.read(id, h));
+    }
+
+    fn store(&mut self, id: usize, store: &'p Store) {
+        let home = self.functions[id].home;
+        let members = store
+            .path
+            .iter()
+            .filter_map(|&(ty, member)| Some((self.structs.id(home, ty)?, member)));
+        let dead = members.clone().find(|&(s, member)| !self.structs.is_live(s, member));
+        if let Some(dead) = dead {
+            if !self.acts(id, store.value) && !self.acts(id, store.pointer) {
+                self.waiting.entry(dead).or_default().push(Waiting::Store(id, store));
+                return;
+            }
+            // All members on the way.
+            let members: Vec<_> = members.collect();
+            for (s, member) in members {
+                self.enliven(s, member);
+            }
+        }
+        self.address(id, store.pointer);
+        self.read(id, store.value);
     }
 
     /// The pointer of a store: its members are written, not read.
-    fn address(&mut self, mut handle: Handle<Expression>) {
+    fn address(&mut self, id: usize, mut handle: Handle<Expression>) {
+        let Some(function) = self.functions[id].ir(self.homes) else {
+            return;
+        };
         loop {
-            self.live[handle.index()] = true;
-            match self.function.expressions[handle] {
+            self.states[id].live[handle.index()] = true;
+            match function.expressions[handle] {
                 Expression::AccessIndex { base, .. } => handle = base,
                 Expression::Access { base, index } => {
-                    self.read(index);
+                    self.read(id, index);
                     handle = base;
                 }
                 Expression::LocalVariable(local) => {
-                    self.function.local_variables[local].init.iter().for_each(|&i| self.read(i));
+                    function.local_variables[local].init.iter().for_each(|&i| self.read(id, i));
                     return;
                 }
                 // A pointer from elsewhere: an argument, a variable of the module.
@@ -433,72 +285,101 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// All members on the way of a pointer.
-    fn enliven_path(&mut self, mut pointer: Handle<Expression>) {
-        loop {
-            match self.function.expressions[pointer] {
-                Expression::AccessIndex { base, index } => {
-                    let ir = &self.homes[self.planned.home].unit.ir;
-                    if let Some(id) = struct_of(self.planned.home, self.structs, self.info, ir, base) {
-                        self.changed |= self.structs.enliven(id, index);
-                    }
-                    pointer = base;
-                }
-                Expression::Access { base, .. } => pointer = base,
-                _ => return,
-            }
-        }
-    }
-
-    fn read(&mut self, handle: Handle<Expression>) {
+    fn read(&mut self, id: usize, handle: Handle<Expression>) {
+        let planned = &self.functions[id];
+        let Some(function) = planned.ir(self.homes) else { return };
+        // A read is never begun within another one.
         self.stack.push(handle);
         while let Some(handle) = self.stack.pop() {
-            if std::mem::replace(&mut self.read[handle.index()], true) {
+            let state = &mut self.states[id];
+            if std::mem::replace(&mut state.read[handle.index()], true) {
                 continue;
             }
-            self.live[handle.index()] = true;
-            self.expression(handle);
+            state.live[handle.index()] = true;
+            self.expression(id, planned, function, handle);
         }
     }
 
-    fn expression(&mut self, handle: Handle<Expression>) {
-        let home = self.planned.home;
-        let expression = &self.function.expressions[handle];
-        match expression {
+    fn expression(&mut self, id: usize, planned: &Planned, function: &naga::Function, handle: Handle<Expression>) {
+        let unit = self.unit(id);
+        match &function.expressions[handle] {
             Expression::AccessIndex { base, index } => {
-                let unit = &self.homes[home].unit;
-                if let Expression::GlobalVariable(global) = self.function.expressions[*base]
-                    && super::bindings::is_params(unit, global)
-                    && self.params.insert((home, *index))
+                if let Expression::GlobalVariable(global) = function.expressions[*base]
+                    && unit.params == Some(global)
                 {
-                    self.changed = true;
+                    self.params.insert((planned.home, *index));
                 }
-                if let Some(id) = struct_of(home, self.structs, self.info, &unit.ir, *base) {
-                    self.changed |= self.structs.enliven(id, *index);
+                if let Some(s) = struct_of(planned, self.structs, unit, *base) {
+                    self.enliven(s, *index);
                 }
                 self.stack.push(*base);
             }
-            Expression::LocalVariable(local) => self.stack.extend(self.function.local_variables[*local].init),
+            Expression::LocalVariable(local) => self.stack.extend(function.local_variables[*local].init),
             Expression::Compose { ty, components } => {
-                let id = self.structs.id(home, *ty);
+                let Some(s) = self.structs.id(planned.home, *ty) else {
+                    self.stack.extend(components);
+                    return;
+                };
                 for (index, &component) in components.iter().enumerate() {
-                    let dead = id.filter(|&id| !self.structs.is_live(id, index as u32));
-                    if let Some(id) = dead {
-                        if !self.holds_action(component) {
+                    if !self.structs.is_live(s, index as u32) {
+                        if !self.acts(id, component) {
+                            let waiting = self.waiting.entry((s, index as u32)).or_default();
+                            waiting.push(Waiting::Component(id, component));
                             continue;
                         }
-                        self.changed |= self.structs.enliven(id, index as u32);
+                        self.enliven(s, index as u32);
                     }
                     self.stack.push(component);
                 }
             }
-            Expression::CallResult(_) => {
-                if let Some((callee, arguments)) = self.pure_calls.remove(&handle) {
-                    self.call(callee);
-                    self.stack.extend(arguments);
+            Expression::CallResult(callee) => {
+                let call = self.facts(id).and_then(|facts| facts.calls.get(*facts.call_of.get(&handle)?));
+                if let Some(call) = call
+                    && self.can_go(id, *callee)
+                {
+                    if let Some(callee) = planned.calls.get(*callee) {
+                        self.need(callee);
+                    }
+                    self.stack.extend(&call.arguments);
                 }
             }
             other => expression_operands(other, &mut |&h| self.stack.push(h)),
         }
+    }
+
+    /// Stage outputs are alive, those of a vertex stage where a fragment stage reads their location.
+    fn link_stages(&mut self, outputs: &[Output]) -> bool {
+        let mut changed = false;
+        for output in outputs {
+            let wanted = match &output.readers {
+                Some(readers) => readers.iter().any(|&(id, member)| self.structs.is_live(id, member)),
+                None => true,
+            };
+            changed |= wanted && self.enliven(output.id, output.member);
+        }
+        changed
+    }
+
+    /// WGSL has no empty structs: one that is used keeps a member, a built-in value rather than a location.
+    fn keep_one_member(&mut self) -> bool {
+        let is_empty = |s: &super::structs::Struct| !s.fixed && !s.live.iter().any(|&l| l);
+        let mut used = vec![false; self.structs.list.len()];
+        for (planned, state) in self.functions.iter().zip(&self.states).filter(|(_, state)| state.needed) {
+            let ir = &self.homes[planned.home].unit.ir;
+            let Some(facts) = planned.facts(self.homes) else { continue };
+            let living = facts.typed.iter().filter(|(h, _)| state.live[h.index()]).map(|&(_, ty)| ty);
+            for ty in facts.types.iter().copied().chain(living) {
+                used_structs(self.structs, ir, planned.home, ty, &mut |id| used[id] = true);
+            }
+        }
+        let mut changed = false;
+        for id in (0..used.len()).filter(|&id| used[id]) {
+            let s = &self.structs.list[id];
+            if is_empty(s) {
+                let member = s.kept_when_empty(self.homes);
+                changed |= self.enliven(id, member);
+            }
+        }
+        changed
     }
 }

@@ -3,29 +3,24 @@
 //! Both writers follow it: one writes IR, the other the authors' own text.
 
 mod bindings;
-mod branches;
 mod live;
 mod names;
-mod operands;
-mod pure;
 mod reach;
+mod stages;
 mod stores;
 mod structs;
 
-use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use rustc_hash::FxHashSet as HashSet;
 use std::sync::Arc;
 
 use naga::Handle;
 
 use crate::manifest::Combine;
-use crate::parse::Unit;
+use crate::parse::{Cuts, Facts, Unit};
 use crate::resolve::{Instances, Tree};
 
-pub use bindings::{Block, GROUPS, PlannedGlobal, declared, declaring, is_instances, is_params};
-pub use branches::{Choice, choice, leaves, reachable};
-pub use names::joined;
-pub use operands::{expression_operands_mut, statement_operands_mut};
-pub use pure::can_go;
+pub use bindings::{Block, GROUPS, PlannedGlobal, declaring};
+pub use names::{Names, joined};
 pub use reach::{Roots, plan, roomy};
 pub use stores::{is_dead_store, struct_of};
 pub use structs::Structs;
@@ -65,6 +60,33 @@ pub enum Body {
     },
 }
 
+/// Where the calls of a function lead.
+#[derive(Debug, Default)]
+pub struct Calls(Vec<(Handle<naga::Function>, usize)>);
+
+impl Calls {
+    /// Notes where calls of a function lead.
+    pub fn add(&mut self, callee: Handle<naga::Function>, id: usize) {
+        self.0.push((callee, id));
+    }
+
+    /// The planned function that is called.
+    pub fn get(&self, callee: Handle<naga::Function>) -> Option<usize> {
+        // A function calls a handful of others.
+        self.0.iter().find(|(c, _)| *c == callee).map(|&(_, id)| id)
+    }
+
+    /// All planned functions that are called.
+    pub fn ids(&self) -> impl Iterator<Item = usize> {
+        self.0.iter().map(|&(_, id)| id)
+    }
+
+    /// Renumbers the planned functions, and forgets calls of those that are gone.
+    pub fn renumber(&mut self, new: &[Option<usize>]) {
+        self.0.retain_mut(|(_, id)| new[*id].inspect(|&n| *id = n).is_some());
+    }
+}
+
 /// A function that is reached.
 #[derive(Debug)]
 pub struct Planned {
@@ -72,8 +94,8 @@ pub struct Planned {
     pub home: usize,
     /// Its body.
     pub body: Body,
-    /// What its calls lead to: by handle in the home's unit; for combined functions in order.
-    pub calls: HashMap<Handle<naga::Function>, usize>,
+    /// What its calls lead to, by handle in the home's unit; none for combined functions.
+    pub calls: Calls,
     /// What a combined function calls, in order.
     pub targets: Vec<usize>,
     /// The function that reached it first; `None` for entry points.
@@ -82,8 +104,6 @@ pub struct Planned {
     pub live: Vec<bool>,
     /// Whether it does nothing but give a value, so that a call without readers can go.
     pub pure: bool,
-    /// Whether an entry point still reaches it when calls without readers are gone.
-    pub needed: bool,
     /// Name in the emitted text.
     pub name: String,
 }
@@ -109,11 +129,16 @@ pub struct Plan {
     pub blocks: Vec<Block>,
     /// Whether functions are nested or chained so deep that walks over them want a large stack: see [`roomy`].
     pub deep: bool,
-    /// Emitted names of constants, overrides, structs, aliases and variables: home, name in the unit.
-    pub names: HashMap<(usize, String), String>,
+    /// Emitted names of the units' items.
+    pub names: Names,
 }
 
 impl Plan {
+    /// The emitted name of an item of a home.
+    pub fn name(&self, home: usize, name: &str) -> Option<&str> {
+        self.names.get(&self.homes, home, name)
+    }
+
     /// The home of a category's interface.
     pub fn interface_home(&self, category: &str) -> Option<usize> {
         self.homes.iter().position(|h| h.unit.interface.as_deref() == Some(category))
@@ -137,20 +162,35 @@ impl Planned {
         }
     }
 
-    /// Results of its calls and other statements, with their places.
-    pub fn results<'p>(&self, homes: &'p [Home]) -> &'p [(Handle<naga::Expression>, std::ops::Range<usize>)] {
+    /// What is known of its body whatever it is linked to; nothing for a combined function.
+    pub fn facts<'p>(&self, homes: &'p [Home]) -> Option<&'p Facts> {
         let unit = &homes[self.home].unit;
-        let index = match self.body {
-            Body::Function(handle) => handle.index(),
-            Body::Entry(index) => unit.ir.functions.len() + index,
-            Body::Combined { .. } => return &[],
-        };
-        &unit.results[index]
+        match self.body {
+            Body::Function(handle) => Some(&unit.facts[handle.index()]),
+            Body::Entry(index) => Some(&unit.facts[unit.ir.functions.len() + index]),
+            Body::Combined { .. } => None,
+        }
     }
 
-    /// Types of its expressions.
-    pub fn info<'p>(&self, homes: &'p [Home]) -> Option<&'p naga::valid::FunctionInfo> {
-        let info = &homes[self.home].unit.info;
+    /// The stretches of its text that may go; none for a combined function.
+    pub fn cuts<'p>(&self, homes: &'p [Home]) -> Option<&'p Cuts> {
+        let unit = &homes[self.home].unit;
+        match self.body {
+            Body::Function(handle) => Some(&unit.cuts[handle.index()]),
+            Body::Entry(index) => Some(&unit.cuts[unit.ir.functions.len() + index]),
+            Body::Combined { .. } => None,
+        }
+    }
+
+    /// Whether a call stays although nobody reads its result.
+    pub fn is_kept(&self, functions: &[Planned], unit: &Unit, callee: Handle<naga::Function>) -> bool {
+        let planned = self.calls.get(callee);
+        planned.is_some_and(|id| !(unit.droppable[callee.index()] && functions[id].pure))
+    }
+
+    /// Types of its expressions; `unit` is its home's.
+    pub fn info_of<'p>(&self, unit: &'p Unit) -> Option<&'p naga::valid::FunctionInfo> {
+        let info = &unit.info;
         match self.body {
             Body::Function(handle) => Some(&info[handle]),
             Body::Entry(index) => Some(info.get_entry_point(index)),

@@ -1,17 +1,18 @@
 //! From the entry points to every function that is called, across modules.
 
 use rustc_hash::FxHashMap as HashMap;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use naga::{Block, Handle, Statement};
+use naga::Handle;
 
-use super::{Body, Choice, Home, Plan, Planned, Structs, bindings, choice, live, names, pure::is_pure, reachable};
-use crate::catalog::Catalog;
+use super::{Body, Calls, Home, Names, Plan, Planned, Structs, bindings, live, names};
+use crate::catalog::{Catalog, Variants};
 use crate::contracts::compute_entry;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::{Combine, PassDecl};
 use crate::parse::{Origin, Unit};
-use crate::resolve::{Instances, Place, Tree};
+use crate::resolve::{Instance, Instances, Place, Tree};
 use crate::upstream::guarded;
 
 /// Which entry points a plan starts from.
@@ -98,7 +99,7 @@ fn follow(catalog: &Catalog, mut reach: Reach, roots: &Roots) -> Result<Plan, Re
         globals: Vec::new(),
         blocks: Vec::new(),
         deep: false,
-        names: HashMap::default(),
+        names: Names::default(),
     };
     live::analyse(&mut plan);
     bindings::allocate(catalog, &mut plan)?;
@@ -127,7 +128,15 @@ impl Reach<'_> {
         for index in 0..self.instances.list.len() {
             let instance = &self.instances.list[index];
             let node = &self.tree.nodes[instance.node];
-            let unit = self.catalog.unit(&node.module, &node.constants)?;
+            // Equal texts are one unit, whatever the catalog still keeps: linking goes by identity.
+            let equal = |before: &Instance| {
+                let other = &self.tree.nodes[before.node];
+                Arc::ptr_eq(&other.module, &node.module) && Variants::key(&other.constants) == Variants::key(&node.constants)
+            };
+            let unit = match self.instances.list[..index].iter().position(equal) {
+                Some(before) => Arc::clone(&self.homes[before].unit),
+                None => self.catalog.unit(&node.module, &node.constants)?,
+            };
             // What the compiler makes itself needs no telling apart.
             let prefix = if node.module.category.is_empty() {
                 String::new()
@@ -137,24 +146,8 @@ impl Reach<'_> {
             self.push_home(unit, Some(index), prefix);
         }
         // Every interface that a unit names.
-        let mut names: Vec<String> = Vec::new();
-        for home in &self.homes {
-            let mut own: Vec<&String> = home
-                .unit
-                .composed
-                .names
-                .values()
-                .filter_map(|o| match o {
-                    Origin::Interface(category) | Origin::Offered { interface: category, .. } => Some(category),
-                    _ => None,
-                })
-                .collect();
-            own.extend(home.unit.needs.slots.iter().map(|s| &s.interface));
-            own.extend(&home.unit.needs.implements);
-            names.extend(own.into_iter().cloned());
-        }
-        names.sort();
-        names.dedup();
+        let named: BTreeSet<&String> = self.homes.iter().flat_map(|home| &home.unit.interfaces).collect();
+        let mut names: Vec<String> = named.into_iter().cloned().collect();
         let mut next = 0;
         while next < names.len() {
             let name = names[next].clone();
@@ -230,7 +223,7 @@ impl Reach<'_> {
         }
         self.stack.push(target.clone());
         let (home, body) = target.clone();
-        let mut calls = HashMap::default();
+        let mut calls = Calls::default();
         let mut targets = Vec::new();
         let pure;
         if let Body::Combined { slot, function, .. } = &body {
@@ -240,27 +233,19 @@ impl Reach<'_> {
             pure = targets.iter().all(|&t| self.functions[t].pure);
         } else {
             let unit = Arc::clone(&self.homes[home].unit);
-            let function = match body {
-                Body::Entry(index) => &unit.ir.entry_points[index].function,
-                Body::Function(handle) => &unit.ir.functions[handle],
+            let facts = match body {
+                Body::Entry(index) => &unit.facts[unit.ir.functions.len() + index],
+                Body::Function(handle) => &unit.facts[handle.index()],
                 Body::Combined { .. } => return Ok(0),
             };
-            let mut called = Vec::new();
-            calls_in(&unit.ir, function, &function.body, &mut called);
-            for handle in called {
-                if let std::collections::hash_map::Entry::Vacant(e) = calls.entry(handle) {
-                    let next = self.call(home, handle)?;
-                    let id = self.visit(next)?;
-                    e.insert(id);
-                }
+            for &handle in &facts.callees {
+                let next = self.call(home, handle)?;
+                calls.add(handle, self.visit(next)?);
             }
-            pure = is_pure(&unit, function, &|f| {
-                calls.get(&f).is_none_or(|&id: &usize| self.functions[id].pure)
-            });
+            pure = facts.writes_only_own && calls.ids().all(|id| self.functions[id].pure);
         }
         self.stack.pop();
         let id = self.functions.len();
-        let needed = matches!(body, Body::Entry(_));
         self.functions.push(Planned {
             home,
             body,
@@ -269,7 +254,6 @@ impl Reach<'_> {
             caller: None,
             live: Vec::new(),
             pure,
-            needed,
             name: String::new(),
         });
         self.memo.insert(target, id);
@@ -452,30 +436,5 @@ impl Reach<'_> {
             Body::Combined { function, .. } => function.clone(),
         };
         format!("{module}::{function}")
-    }
-}
-
-/// Functions called in the live branches of a body, in order.
-fn calls_in(ir: &naga::Module, function: &naga::Function, block: &Block, calls: &mut Vec<Handle<naga::Function>>) {
-    for (statement, _) in reachable(ir, function, block) {
-        match statement {
-            Statement::Call { function, .. } => calls.push(*function),
-            Statement::Block(inner) => calls_in(ir, function, inner, calls),
-            Statement::If { condition, accept, reject } => {
-                let choice = choice(ir, function, *condition, accept, reject);
-                if choice != Choice::Reject {
-                    calls_in(ir, function, accept, calls);
-                }
-                if choice != Choice::Accept {
-                    calls_in(ir, function, reject, calls);
-                }
-            }
-            Statement::Switch { cases, .. } => cases.iter().for_each(|c| calls_in(ir, function, &c.body, calls)),
-            Statement::Loop { body, continuing, .. } => {
-                calls_in(ir, function, body, calls);
-                calls_in(ir, function, continuing, calls);
-            }
-            _ => {}
-        }
     }
 }

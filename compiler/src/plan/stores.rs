@@ -1,22 +1,22 @@
 //! Stores into members that nobody reads.
 
-use naga::{Expression, Handle, TypeInner};
+use naga::{Expression, Handle};
 
-use super::Structs;
+use super::{Planned, Structs};
+use crate::parse::{Unit, struct_type};
 
 /// Whether a store writes a member that nobody reads.
 pub fn is_dead_store(
-    home: usize,
+    planned: &Planned,
     structs: &Structs,
+    unit: &Unit,
     function: &naga::Function,
-    info: &naga::valid::FunctionInfo,
-    ir: &naga::Module,
     mut pointer: Handle<Expression>,
 ) -> bool {
     loop {
         match function.expressions[pointer] {
             Expression::AccessIndex { base, index } => {
-                if struct_of(home, structs, info, ir, base).is_some_and(|id| !structs.is_live(id, index)) {
+                if struct_of(planned, structs, unit, base).is_some_and(|id| !structs.is_live(id, index)) {
                     return true;
                 }
                 pointer = base;
@@ -28,18 +28,6 @@ pub fn is_dead_store(
 }
 
 /// The struct that an expression is, or points to.
-pub fn struct_of(
-    home: usize,
-    structs: &Structs,
-    info: &naga::valid::FunctionInfo,
-    ir: &naga::Module,
-    handle: Handle<Expression>,
-) -> Option<usize> {
-    let resolution = &info[handle].ty;
-    let ty = match *resolution.inner_with(&ir.types) {
-        TypeInner::Pointer { base, .. } => base,
-        TypeInner::Struct { .. } => resolution.handle()?,
-        _ => return None,
-    };
-    structs.id(home, ty)
+pub fn struct_of(planned: &Planned, structs: &Structs, unit: &Unit, handle: Handle<Expression>) -> Option<usize> {
+    structs.id(planned.home, struct_type(unit, planned.info_of(unit)?, handle)?)
 }

@@ -6,15 +6,14 @@ use super::{
     Binding, BindingType, Fill, FunctionOrigin, Instance, Layouts, Override, ParamPlace, ParamUse, Pass, Reflection, SCHEMA_VERSION,
     binding_type, entry_point, stages_using, wgsl_type_name,
 };
-use crate::catalog::Catalog;
 use crate::parse::constant_name;
-use crate::plan::{Body, Plan, declared, is_instances};
+use crate::plan::{Body, Plan};
 use crate::validate::Validated;
 
 /// Reflects a pass.
-pub fn reflect(catalog: &Catalog, plan: &Plan, validated: &Validated, hash: u128, pass: &str) -> Reflection {
+pub fn reflect(plan: &Plan, validated: &Validated, hash: u128, pass: &str) -> Reflection {
     let module = validated.module();
-    let bindings = bindings(catalog, plan, validated);
+    let bindings = bindings(plan, validated);
     let reached: Vec<bool> = (0..plan.instances.list.len())
         .map(|i| plan.functions.iter().any(|f| f.home == i))
         .collect();
@@ -53,28 +52,32 @@ pub fn reflect(catalog: &Catalog, plan: &Plan, validated: &Validated, hash: u128
     }
 }
 
-fn bindings(catalog: &Catalog, plan: &Plan, validated: &Validated) -> Vec<Binding> {
+fn bindings(plan: &Plan, validated: &Validated) -> Vec<Binding> {
     let (module, info) = (validated.module(), validated.info());
     // Fails only for types that validation has already refused.
     let Ok(layouts) = Layouts::new(module) else { return Vec::new() };
     let mut by_place = HashMap::new();
     for block in &plan.blocks {
-        by_place.insert((block.group, block.binding), Fill::Params);
+        by_place.insert((block.group, block.binding), (Fill::Params, String::new()));
     }
     for global in &plan.globals {
         let Some(place) = global.binding else { continue };
         let unit = &plan.homes[global.home].unit;
         let name = unit.ir.global_variables[global.handle].name.clone().unwrap_or_default();
         let instance = plan.homes[global.home].instance.map(|i| plan.instances.list[i].name.clone());
-        let fill = match (&instance, declared(catalog, plan, global.home, &name)) {
-            (Some(instance), _) if is_instances(unit, global.handle) => Fill::Instances {
-                instance: instance.clone(),
-            },
-            (_, Some(resource)) => Fill::Resource {
-                instance,
-                resource: name,
-                declared: resource.kind.clone(),
-            },
+        let fill = match (&instance, &global.declared) {
+            (Some(instance), _) if unit.instances == Some(global.handle) => {
+                let instance = instance.clone();
+                (Fill::Instances { instance }, String::new())
+            }
+            (_, Some(resource)) => {
+                let fill = Fill::Resource {
+                    instance,
+                    resource: name,
+                    declared: resource.kind.clone(),
+                };
+                (fill, resource.doc.clone())
+            }
             (_, None) => continue,
         };
         by_place.insert(place, fill);
@@ -84,13 +87,15 @@ fn bindings(catalog: &Catalog, plan: &Plan, validated: &Validated) -> Vec<Bindin
         .iter()
         .filter_map(|(handle, global)| {
             let place = global.binding.as_ref()?;
+            let (fill, doc) = by_place.get(&(place.group, place.binding))?.clone();
             Some(Binding {
                 group: place.group,
                 binding: place.binding,
                 name: global.name.clone().unwrap_or_default(),
                 stages: stages_using(module, info, handle),
                 ty: binding_type(module, info, &layouts, handle)?,
-                fill: by_place.get(&(place.group, place.binding))?.clone(),
+                fill,
+                doc,
             })
         })
         .collect();
@@ -103,13 +108,13 @@ fn overrides(plan: &Plan, validated: &Validated) -> Vec<Override> {
     let mut found = Vec::new();
     for (index, instance) in plan.instances.list.iter().enumerate() {
         for (name, (_, default)) in &plan.homes[index].unit.needs.overrides {
-            let Some(emitted) = plan.names.get(&(index, constant_name(name))) else {
+            let Some(emitted) = plan.name(index, &constant_name(name)) else {
                 continue;
             };
-            let linked = module.overrides.iter().find(|(_, o)| o.name.as_ref() == Some(emitted));
+            let linked = module.overrides.iter().find(|(_, o)| o.name.as_deref() == Some(emitted));
             if let (Some((_, linked)), Some(default)) = (linked, default.number()) {
                 found.push(Override {
-                    name: emitted.clone(),
+                    name: emitted.to_owned(),
                     ty: wgsl_type_name(module, linked.ty),
                     instance: instance.name.clone(),
                     param: name.clone(),
@@ -147,13 +152,13 @@ fn place(plan: &Plan, module: &naga::Module, bindings: &[Binding], home: usize, 
     let node = &plan.tree.nodes[plan.instances.list[home].node];
     let shared = plan.shared_home(home);
     if let Some((value, _)) = node.constants.get(name) {
-        let emitted = plan.names.get(&(shared, constant_name(name)))?;
-        let there = module.constants.iter().any(|(_, c)| c.name.as_ref() == Some(emitted));
+        let emitted = plan.name(shared, &constant_name(name))?;
+        let there = module.constants.iter().any(|(_, c)| c.name.as_deref() == Some(emitted));
         return (there || folded(plan, home, name)).then(|| ParamPlace::Constant { value: value.clone() });
     }
-    if let Some(emitted) = plan.names.get(&(home, constant_name(name))) {
-        let there = module.overrides.iter().any(|(_, o)| o.name.as_ref() == Some(emitted));
-        return there.then(|| ParamPlace::Override { name: emitted.clone() });
+    if let Some(emitted) = plan.name(home, &constant_name(name)) {
+        let there = module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(emitted));
+        return there.then(|| ParamPlace::Override { name: emitted.to_owned() });
     }
     for block in &plan.blocks {
         let Some(position) = block.members.iter().position(|m| m.home == home && m.param == name) else {
@@ -193,13 +198,15 @@ fn functions(plan: &Plan) -> Vec<FunctionOrigin> {
             let combined = matches!(planned.body, Body::Combined { .. });
             let item = home.unit.scan.item(&source).filter(|_| !combined);
             let node = home.instance.map(|i| &plan.tree.nodes[plan.instances.list[i].node]);
+            let file = &home.unit.file;
+            let (file, line) = item.map_or((file.name.as_str(), 0), |i| file.line_of(i.span.start, i.line));
             FunctionOrigin {
                 name: planned.name.clone(),
                 source,
                 instance: home.instance.map(|i| plan.instances.list[i].name.clone()),
                 module: node.map_or_else(|| home.unit.interface.clone().unwrap_or_default(), |n| n.module.name.clone()),
-                file: home.unit.file.name.clone(),
-                line: item.map_or(0, |i| home.unit.file.position(i.span.start).line as u32),
+                file: file.to_owned(),
+                line: line as u32,
             }
         })
         .collect()

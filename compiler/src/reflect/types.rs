@@ -91,6 +91,9 @@ pub struct Binding {
     pub ty: BindingType,
     /// What the host puts there.
     pub fill: Fill,
+    /// One line for people, of a resource whose declaration has one.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub doc: String,
 }
 
 /// Type of a bound resource.
@@ -156,6 +159,20 @@ pub struct Layout {
     /// Number of elements; `None` for runtime-sized arrays and what is no array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub count: Option<u32>,
+}
+
+impl Layout {
+    /// Fewest bytes that a binding of this layout may have: a runtime-sized array counts with one element.
+    pub fn smallest_size(&self) -> u64 {
+        if let Some(last) = self.members.last() {
+            let end = u64::from(last.offset) + last.layout.smallest_size();
+            return u64::from(self.size).max(end).next_multiple_of(u64::from(self.align.max(1)));
+        }
+        match (&self.element, self.count, self.stride) {
+            (Some(_), None, Some(stride)) => u64::from(stride),
+            _ => u64::from(self.size),
+        }
+    }
 }
 
 /// A member of a struct in a buffer.

@@ -37,7 +37,7 @@ struct Resolver<'a> {
     catalog: &'a Catalog,
     tree: Tree,
     /// Modules whose defaults are being expanded, outermost first.
-    defaults: Vec<String>,
+    defaults: Vec<Arc<Module>>,
 }
 
 impl Resolver<'_> {
@@ -104,14 +104,14 @@ impl Resolver<'_> {
         let by_recipe = node.fill.get(name);
         let (filling, at) = match (by_recipe, &slot.default) {
             // A module that the compiler made stands around the recipe: what fills it is the recipe's own root.
-            (Some(filling), _) if module.category.is_empty() => (filling.clone(), place.clone()),
-            (Some(filling), _) => (filling.clone(), place.keys(&["fill", name])),
+            (Some(filling), _) if module.category.is_empty() => (filling, place.clone()),
+            (Some(filling), _) => (filling, place.keys(&["fill", name])),
             (None, Some(default)) => {
                 let at = Place::new(&module.source).keys(&["slots", name, "default"]);
                 if let Some(circle) = circle(&self.defaults, module, &at) {
                     return Err(circle);
                 }
-                (default.clone(), at)
+                (default, at)
             }
             (None, None) if slot.arity == Arity::Single => {
                 return Err(missing_filling(self.catalog, module, name, slot, place));
@@ -120,7 +120,7 @@ impl Resolver<'_> {
         };
         let many = matches!(filling, Filling::Many(_));
         let nodes = match filling {
-            Filling::One(node) => vec![node],
+            Filling::One(node) => std::slice::from_ref(node),
             Filling::Many(nodes) => nodes,
         };
         let takes = match slot.arity {
@@ -133,7 +133,7 @@ impl Resolver<'_> {
         }
         let is_default = by_recipe.is_none();
         if is_default {
-            self.defaults.push(module.name.clone());
+            self.defaults.push(Arc::clone(module));
         }
         let mut filled = Vec::with_capacity(nodes.len());
         for (index, child) in nodes.iter().enumerate() {
@@ -194,10 +194,10 @@ pub fn unknown_slots<'a>(module: &Module, names: impl IntoIterator<Item = &'a St
 }
 
 /// The error about a module whose default leads back to it, if it does. `defaults` are the modules whose defaults are being expanded.
-pub fn circle(defaults: &[String], module: &Module, at: &Place) -> Option<Report> {
-    let first = defaults.iter().position(|m| *m == module.name)?;
-    let mut circle = defaults[first..].to_vec();
-    circle.push(module.name.clone());
+pub fn circle(defaults: &[Arc<Module>], module: &Module, at: &Place) -> Option<Report> {
+    let first = defaults.iter().position(|m| m.name == module.name)?;
+    let circle = defaults[first..].iter().map(AsRef::as_ref).chain([module]);
+    let circle: Vec<&str> = circle.map(|m| m.name.as_str()).collect();
     Some(
         Diagnostic::new(codes::CYCLIC_TREE, format!("the defaults of `{}` lead back to itself", module.name))
             .at(&at.file, at.span(), "this default is part of the circle")

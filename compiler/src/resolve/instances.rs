@@ -1,7 +1,6 @@
 //! Which places of a tree are one and the same instance.
 
-use std::collections::HashMap;
-use std::fmt::Write as _;
+use rustc_hash::FxHashMap as HashMap;
 
 use super::Tree;
 use crate::catalog::Catalog;
@@ -39,7 +38,7 @@ impl Instances {
         let mapped = mapped_subtrees(tree);
         let mut list: Vec<Instance> = Vec::new();
         let mut of_node: Vec<usize> = Vec::with_capacity(tree.nodes.len());
-        let mut known: HashMap<(&str, Option<usize>, Option<usize>), usize> = HashMap::new();
+        let mut known: HashMap<(usize, Option<usize>, Option<usize>), usize> = HashMap::default();
         for (index, node) in tree.nodes.iter().enumerate() {
             let parent = node.parent.map(|p| of_node[p]);
             // Below a shared parent everything is shared with it.
@@ -55,7 +54,7 @@ impl Instances {
                 Some(Some(first)) => of_node[first],
                 _ => {
                     let key = (
-                        structure[index].as_str(),
+                        structure[index],
                         parent.filter(|_| offered[index] || mapped[index]),
                         own_texture.then_some(index),
                     );
@@ -86,28 +85,22 @@ fn twin_below(tree: &Tree, parent: usize, node: usize, first: usize) -> Option<u
     })
 }
 
-/// A text for each node that is equal for equal subtrees.
-fn structures(tree: &Tree) -> Vec<String> {
-    let mut texts = vec![String::new(); tree.nodes.len()];
+/// A number for each node that is equal for equal subtrees.
+fn structures(tree: &Tree) -> Vec<usize> {
+    let mut numbers = vec![0; tree.nodes.len()];
+    let mut known = HashMap::default();
     for (index, node) in tree.nodes.iter().enumerate().rev() {
-        let mut text = format!("{}/{}", node.module.category, node.module.name);
-        if let Some(label) = &node.label {
-            // Infallible: writing to a string.
-            let _ = write!(text, "#{label}");
-        }
-        for (name, (_, value)) in &node.constants {
-            let _ = write!(text, "|{name}={}", value.wgsl());
-        }
-        for (slot, filled) in &node.fills {
-            let _ = write!(text, "|{slot}:[");
-            for &child in &filled.nodes {
-                let _ = write!(text, "{},", texts[child]);
-            }
-            text.push(']');
-        }
-        texts[index] = text;
+        let constants: Vec<(&str, String)> = node.constants.iter().map(|(n, (_, value))| (n.as_str(), value.wgsl())).collect();
+        let slots: Vec<(&str, Vec<usize>)> = node
+            .fills
+            .iter()
+            .map(|(slot, filled)| (slot.as_str(), filled.nodes.iter().map(|&child| numbers[child]).collect()))
+            .collect();
+        let next = known.len();
+        let key = (&node.module.category, &node.module.name, &node.label, constants, slots);
+        numbers[index] = *known.entry(key).or_insert(next);
     }
-    texts
+    numbers
 }
 
 /// Whether a module of the subtree calls functions of the subtree's owner.
@@ -135,7 +128,7 @@ fn mapped_subtrees(tree: &Tree) -> Vec<bool> {
 }
 
 fn name(tree: &Tree, list: &mut [Instance]) {
-    let mut used: HashMap<String, usize> = HashMap::new();
+    let mut used: HashMap<String, usize> = HashMap::default();
     for instance in list.iter_mut() {
         let node = &tree.nodes[instance.node];
         let module = identifier(&node.module.name);

@@ -15,7 +15,7 @@ use crate::diagnostics::SourceFile;
 use crate::manifest::{Arity, Locator, Step, Typed, Value};
 
 pub use fill::{resolve, resolve_root};
-pub use instances::Instances;
+pub use instances::{Instance, Instances};
 pub use resources::check_resources;
 
 /// A step into a RON text, owned.
@@ -27,13 +27,21 @@ pub enum Way {
     Index(usize),
 }
 
-/// A place in a RON text: where a node was named.
+/// A place in a RON text: where a node was named. Cheap to make, since most are never looked up: further places share the
+/// way to the nearer ones.
 #[derive(Clone, Debug)]
 pub struct Place {
     /// The text.
     pub file: Arc<SourceFile>,
     /// The way to the node in it.
-    pub path: Vec<Way>,
+    path: Option<Arc<Further>>,
+}
+
+/// One more step.
+#[derive(Debug)]
+struct Further {
+    before: Option<Arc<Further>>,
+    way: Way,
 }
 
 impl Place {
@@ -41,33 +49,41 @@ impl Place {
     pub fn new(file: &Arc<SourceFile>) -> Self {
         Self {
             file: Arc::clone(file),
-            path: Vec::new(),
+            path: None,
         }
     }
 
     /// The same text, further in.
     #[must_use]
     pub fn then(&self, step: Way) -> Self {
-        let mut path = self.path.clone();
-        path.push(step);
+        self.clone().into(step)
+    }
+
+    fn into(self, way: Way) -> Self {
         Self {
-            file: Arc::clone(&self.file),
-            path,
+            file: self.file,
+            path: Some(Arc::new(Further { before: self.path, way })),
         }
     }
 
     /// The same text, further in by keys.
     #[must_use]
     pub fn keys(&self, keys: &[&str]) -> Self {
-        keys.iter().fold(self.clone(), |place, key| place.then(Way::Key((*key).to_owned())))
+        keys.iter().fold(self.clone(), |place, key| place.into(Way::Key((*key).to_owned())))
     }
 
     fn steps(&self) -> Vec<Step<'_>> {
-        let step = |way| match way {
-            &Way::Index(index) => Step::Index(index),
-            Way::Key(key) => Step::Key(key),
-        };
-        self.path.iter().map(step).collect()
+        let mut steps = Vec::new();
+        let mut at = self.path.as_deref();
+        while let Some(Further { before, way }) = at {
+            steps.push(match way {
+                &Way::Index(index) => Step::Index(index),
+                Way::Key(key) => Step::Key(key),
+            });
+            at = before.as_deref();
+        }
+        steps.reverse();
+        steps
     }
 
     /// Bytes of the value, or of the nearest thing around it that can be found.

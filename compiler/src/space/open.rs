@@ -145,7 +145,7 @@ struct Opener<'a> {
     /// Fewest and most modules of each expression.
     lengths: Vec<(u32, u32)>,
     /// Modules whose defaults are being expanded, outermost first.
-    defaults: Vec<String>,
+    defaults: Vec<Arc<Module>>,
     amounts: HashMap<String, Amounts>,
 }
 
@@ -431,7 +431,7 @@ impl Opener<'_> {
                 if let Some(circle) = circle(&self.defaults, module, &at) {
                     return if around.quiet { Ok(None) } else { Err(circle) };
                 }
-                self.defaults.push(module.name.clone());
+                self.defaults.push(Arc::clone(module));
                 let found = self.choice(&Choice::from(default), &inner, &at);
                 self.defaults.pop();
                 (found?, at, true)

@@ -12,7 +12,7 @@ use super::target::DISPLAY;
 use super::upload::ATTRIBUTES;
 use super::view::Eye;
 use super::{Draw, Frame};
-use crate::gpu::pipeline::{Pipelines, RenderPipeline, RenderRequest, RenderState};
+use crate::gpu::pipeline::{Constants, Pipelines, RenderPipeline, RenderRequest, RenderState};
 use crate::gpu::resources::{constants, depth_attachment, layer_view};
 use crate::gpu::{DataError, RuntimeError};
 
@@ -48,12 +48,17 @@ pub(crate) const SCREEN: RenderState = RenderState {
     mirrored: false,
 };
 
+/// The constants that a look's settings override.
+pub(crate) fn overridden(look: &Look) -> Result<Constants, DataError> {
+    constants(look.program.reflection(), |param| value_of(look, param))
+}
+
 /// A pipeline for a program in a state, with the constants that its settings override.
 pub(crate) fn request<'l>(look: &'l Look, state: RenderState) -> Result<RenderRequest<'l>, DataError> {
     Ok(RenderRequest {
         program: &look.program,
         state,
-        constants: constants(look.program.reflection(), |param| value_of(look, param))?,
+        constants: overridden(look)?,
     })
 }
 
@@ -65,11 +70,14 @@ pub(crate) struct Drawing<'a> {
     pub commands: wgpu::CommandEncoder,
     pub passes: usize,
     pub fill: Filler<'a>,
+    /// Only one triangle of each call, and of that only the first texel: enough for a driver that compiles when it draws.
+    pub least: bool,
 }
 
 /// One draw call, ready.
-struct Call {
-    pipeline: Arc<RenderPipeline>,
+pub(super) struct Call {
+    pub material: usize,
+    pub pipeline: Arc<RenderPipeline>,
     groups: Vec<wgpu::BindGroup>,
     vertices: Vec<wgpu::Buffer>,
     indices: wgpu::Buffer,
@@ -78,7 +86,7 @@ struct Call {
 }
 
 impl Drawing<'_> {
-    fn next_pass(&mut self) -> usize {
+    pub(super) fn next_pass(&mut self) -> usize {
         self.passes += 1;
         self.passes
     }
@@ -90,16 +98,20 @@ impl Drawing<'_> {
             for (layer, (eye, list)) in (0..).zip(map.eyes.iter().zip(&plan.map_lists[index])) {
                 let look = |draw: &Draw| plan.casters.get(&(index, draw.material));
                 let calls = self.calls(eye, list, look, |_| CASTER)?;
-                let view = layer_view(texture, layer);
-                let pass = self.commands.begin_render_pass(&wgpu::RenderPassDescriptor {
-                    label: Some("shadow map"),
-                    depth_stencil_attachment: Some(depth_attachment(&view)),
-                    ..Default::default()
-                });
-                draw_calls(pass, &calls);
+                self.shadow_layer(&layer_view(texture, layer), &calls);
             }
         }
         Ok(())
+    }
+
+    /// Clears a layer of a shadow map and draws into it.
+    pub(super) fn shadow_layer(&mut self, view: &wgpu::TextureView, calls: &[Call]) {
+        let pass = self.commands.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadow map"),
+            depth_stencil_attachment: Some(depth_attachment(view)),
+            ..Default::default()
+        });
+        draw_calls(pass, calls, self.least);
     }
 
     /// Draws what the camera sees.
@@ -107,6 +119,12 @@ impl Drawing<'_> {
         let plan = self.plan;
         let look = |draw: &Draw| plan.forward[draw.material].as_ref();
         let calls = self.calls(&plan.eye, &plan.list, look, |draw| scene_state(draw, plan.hdr))?;
+        self.scene_calls(hdr, depth, &calls);
+        Ok(())
+    }
+
+    /// Clears the HDR frame and draws into it.
+    pub(super) fn scene_calls(&mut self, hdr: &wgpu::TextureView, depth: &wgpu::TextureView, calls: &[Call]) {
         let [r, g, b] = self.frame.background.to_array().map(f64::from);
         let pass = self.commands.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
@@ -122,12 +140,11 @@ impl Drawing<'_> {
             depth_stencil_attachment: Some(depth_attachment(depth)),
             ..Default::default()
         });
-        draw_calls(pass, &calls);
-        Ok(())
+        draw_calls(pass, calls, self.least);
     }
 
     /// The draw calls of a view.
-    fn calls<'l>(
+    pub(super) fn calls<'l>(
         &mut self,
         eye: &Eye,
         list: &List,
@@ -155,6 +172,7 @@ impl Drawing<'_> {
                 buffer.ok_or_else(|| DataError::new(&path, format!("has no {}, which the recipe reads", ATTRIBUTES[*location as usize])))
             };
             calls.push(Call {
+                material: draw.material,
                 vertices: pipeline.vertex_locations.iter().map(attribute).collect::<Result<_, _>>()?,
                 groups: self.fill.groups(&pipeline, look, &shown)?,
                 pipeline,
@@ -168,36 +186,39 @@ impl Drawing<'_> {
 
     /// Runs compute passes; `hdr` is there after the scene was drawn.
     pub fn compute(&mut self, computes: &[Compute], hdr: Option<&wgpu::TextureView>) -> Result<(), RuntimeError> {
-        for Compute { entry, over, look } in computes {
-            let plan = self.plan;
-            let shown = Shown {
-                pass: self.next_pass(),
-                eye: Some(&plan.eye),
-                list: None,
-                hdr,
-            };
-            let reflection = look.program.reflection();
-            if hdr.is_none() && reads_hdr(reflection) {
-                return Err(DataError::new(&reflection.pass, "reads the finished frame, but runs before it").into());
-            }
-            let constants = constants(reflection, |param| value_of(look, param))?;
-            let pipeline = self.pipelines.compute(&look.program, entry, &constants)?;
-            let groups = self.fill.groups(&pipeline, look, &shown)?;
-            let size = reflection.entry_points.first().and_then(|e| e.workgroup_size).unwrap_or([1; 3]);
-            let [x, y] = match over {
-                Dispatch::Once => [1, 1],
-                Dispatch::Frame => [0, 1].map(|i| self.frame.size[i].div_ceil(size[i].max(1))),
-            };
-            let mut pass = self.commands.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some(&reflection.pass),
-                timestamp_writes: None,
-            });
-            pass.set_pipeline(&pipeline.pipeline);
-            for (index, group) in (0..).zip(&groups) {
-                pass.set_bind_group(index, group, &[]);
-            }
-            pass.dispatch_workgroups(x, y, 1);
+        computes.iter().try_for_each(|compute| self.dispatch(compute, hdr))
+    }
+
+    /// Runs one compute pass.
+    pub(super) fn dispatch(&mut self, compute: &Compute, hdr: Option<&wgpu::TextureView>) -> Result<(), RuntimeError> {
+        let Compute { entry, over, look } = compute;
+        let plan = self.plan;
+        let shown = Shown {
+            pass: self.next_pass(),
+            eye: Some(&plan.eye),
+            list: None,
+            hdr,
+        };
+        let reflection = look.program.reflection();
+        if hdr.is_none() && reads_hdr(reflection) {
+            return Err(DataError::new(&reflection.pass, "reads the finished frame, but runs before it").into());
         }
+        let pipeline = self.pipelines.compute(&look.program, entry, &overridden(look)?)?;
+        let groups = self.fill.groups(&pipeline, look, &shown)?;
+        let size = reflection.entry_points.first().and_then(|e| e.workgroup_size).unwrap_or([1; 3]);
+        let [x, y] = match over {
+            Dispatch::Frame if !self.least => [0, 1].map(|i| self.frame.size[i].div_ceil(size[i].max(1))),
+            _ => [1, 1],
+        };
+        let mut pass = self.commands.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(&reflection.pass),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(&pipeline.pipeline);
+        for (index, group) in (0..).zip(&groups) {
+            pass.set_bind_group(index, group, &[]);
+        }
+        pass.dispatch_workgroups(x, y, 1);
         Ok(())
     }
 
@@ -233,12 +254,18 @@ impl Drawing<'_> {
         for (index, group) in (0..).zip(&groups) {
             pass.set_bind_group(index, group, &[]);
         }
+        if self.least {
+            pass.set_scissor_rect(0, 0, 1, 1);
+        }
         pass.draw(0..3, 0..1);
         Ok(())
     }
 }
 
-fn draw_calls(mut pass: wgpu::RenderPass, calls: &[Call]) {
+fn draw_calls(mut pass: wgpu::RenderPass, calls: &[Call], least: bool) {
+    if least {
+        pass.set_scissor_rect(0, 0, 1, 1);
+    }
     for call in calls {
         pass.set_pipeline(&call.pipeline.pipeline);
         for (index, group) in (0..).zip(&call.groups) {
@@ -248,6 +275,10 @@ fn draw_calls(mut pass: wgpu::RenderPass, calls: &[Call]) {
             pass.set_vertex_buffer(slot, buffer.slice(..));
         }
         pass.set_index_buffer(call.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..call.count, 0, call.objects.clone());
+        if least {
+            pass.draw_indexed(0..3, 0, call.objects.start..call.objects.start + 1);
+        } else {
+            pass.draw_indexed(0..call.count, 0, call.objects.clone());
+        }
     }
 }

@@ -14,7 +14,7 @@ use super::programs::{Programs, instance};
 use super::upload::Uploads;
 use super::view::Eye;
 use super::{Frame, Settings};
-use crate::gpu::layout::{GROUPS, smallest_size, view_dimension};
+use crate::gpu::layout::{GROUPS, view_dimension};
 use crate::gpu::pack::{put_members, size_with};
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::resources::{Bound, bind_group, instance_rows, param_blocks, sampler, stand_in};
@@ -133,7 +133,7 @@ impl Filler<'_> {
                             return Ok(Bound::Buffer(kept.clone()));
                         }
                         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
-                        let size = layout_of(binding).map_or(*bytes, |layout| smallest_size(layout).max(*bytes));
+                        let size = layout_of(binding).map_or(*bytes, |layout| layout.smallest_size().max(*bytes));
                         let made = self.gpu.buffer(&binding.name, usage, &[], size)?;
                         self.kept.insert(key, made.clone());
                         Ok(Bound::Buffer(made))

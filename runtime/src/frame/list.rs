@@ -15,6 +15,28 @@ pub(crate) struct Run {
     pub objects: Range<u32>,
 }
 
+/// Which draws are in the lists at all.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Cut<'a> {
+    /// Also those outside of the view: what may be drawn once the camera or an object moves.
+    pub whole: bool,
+    /// By material: `true` where there is nothing yet to draw it with. What lies beyond the end is there.
+    pub absent: &'a [bool],
+    /// Only programs that are compiled already.
+    pub at_once: bool,
+}
+
+impl Cut<'_> {
+    fn keeps(&self, draw: &Draw, bounds: &Bounds, eye: &Eye) -> bool {
+        (self.whole || eye.sees(bounds)) && !self.lacks(draw.material)
+    }
+
+    /// Whether a material is left out.
+    pub fn lacks(&self, material: usize) -> bool {
+        self.absent.get(material).copied().unwrap_or(false)
+    }
+}
+
 /// Draws of one view in the order in which they are drawn.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct List {
@@ -46,8 +68,8 @@ fn key(draw: &Draw) -> (usize, usize, bool, bool, bool) {
 
 impl List {
     /// What the camera sees: opaque draws grouped, the groups and their members front to back, then blended draws back to front.
-    pub fn of_camera(draws: &[Draw], bounds: &[Bounds], eye: &Eye) -> Self {
-        let seen = |i: &usize| draws[*i].visible && eye.sees(&bounds[*i]);
+    pub fn of_camera(draws: &[Draw], bounds: &[Bounds], eye: &Eye, cut: &Cut) -> Self {
+        let seen = |i: &usize| draws[*i].visible && cut.keeps(&draws[*i], &bounds[*i], eye);
         let depth = |i: usize| eye.depth_of(bounds[i].center());
         let (mut blended, opaque): (Vec<_>, Vec<_>) = (0..draws.len()).filter(seen).partition(|i| draws[*i].alpha_blend);
         blended.sort_by(|a, b| depth(*b).total_cmp(&depth(*a)));
@@ -57,9 +79,9 @@ impl List {
     }
 
     /// What a shadow map sees: casters, grouped.
-    pub fn of_casters(draws: &[Draw], bounds: &[Bounds], eye: &Eye) -> Self {
+    pub fn of_casters(draws: &[Draw], bounds: &[Bounds], eye: &Eye, cut: &Cut) -> Self {
         let seen = (0..draws.len())
-            .filter(|i| draws[*i].casts_shadow && eye.sees(&bounds[*i]))
+            .filter(|i| draws[*i].casts_shadow && cut.keeps(&draws[*i], &bounds[*i], eye))
             .collect();
         Self::of(draws, grouped(draws, seen, |i| eye.depth_of(bounds[i].center())))
     }
@@ -145,7 +167,7 @@ mod tests {
             blend(-9.0),
             mirrored,
         ];
-        let list = List::of_camera(&draws, &world_bounds(&draws), &eye());
+        let list = List::of_camera(&draws, &world_bounds(&draws), &eye(), &Cut::default());
         assert_eq!(
             list.order,
             [3, 1, 2, 7, 6, 0],
@@ -153,10 +175,21 @@ mod tests {
         );
         let runs: Vec<_> = list.runs.iter().map(|r| (r.draw, r.objects.clone())).collect();
         assert_eq!(runs, [(3, 0..2), (2, 2..3), (7, 3..4), (6, 4..6)]);
-        let casters = List::of_casters(&draws, &world_bounds(&draws), &eye());
+        let casters = List::of_casters(&draws, &world_bounds(&draws), &eye(), &Cut::default());
         assert!(
             casters.order.contains(&5) && !casters.order.contains(&4),
             "the invisible one casts, the one behind does not"
         );
+        let whole = Cut {
+            whole: true,
+            ..Cut::default()
+        };
+        let list = List::of_camera(&draws, &world_bounds(&draws), &eye(), &whole);
+        assert!(
+            list.order.contains(&4) && !list.order.contains(&5),
+            "the one behind may be seen later"
+        );
+        let absent = Cut { absent: &[true], ..whole };
+        assert_eq!(List::of_casters(&draws, &world_bounds(&draws), &eye(), &absent), List::default());
     }
 }

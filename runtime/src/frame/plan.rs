@@ -2,15 +2,16 @@
 
 use indexmap::IndexMap;
 use shadewright_compiler::manifest::{Dispatch, Node, PassDecl};
+use shadewright_compiler::program::Program;
+use shadewright_compiler::reflect::Pass;
 
 use super::Frame;
 use super::fill::Look;
-use super::list::{List, world_bounds};
+use super::list::{Cut, List, world_bounds};
 use super::maps::{Map, maps_of, scene_bounds};
 use super::programs::Programs;
-use super::target::hdr_format;
 use super::view::Eye;
-use crate::gpu::{DataError, Gpu, RuntimeError};
+use crate::gpu::{DataError, RuntimeError};
 
 /// A frame's programs and views.
 pub(crate) struct Plan<'a> {
@@ -19,6 +20,8 @@ pub(crate) struct Plan<'a> {
     pub maps: Vec<Map>,
     /// By map and material.
     pub casters: IndexMap<(usize, usize), Look<'a>>,
+    /// Those of which the program is not compiled, by material, where only compiled ones were asked for.
+    pub waiting_casters: Vec<(usize, Node)>,
     pub display: Option<Look<'a>>,
     /// Compute passes before the scene is drawn, and before the display pass: entry point, over what, and the program.
     pub before: Vec<Compute<'a>>,
@@ -38,10 +41,12 @@ pub(crate) struct Compute<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// Compiles what the frame needs, on all cores, and finds out from where it is seen.
-    pub fn of(gpu: &Gpu, programs: &Programs, frame: &'a Frame) -> Result<Self, RuntimeError> {
-        let used = used_materials(frame)?;
-        let shown = used.iter().map(|id| &frame.materials[*id]).chain(&frame.display);
+    /// Compiles what the frame needs, on all cores, and finds out from where it is seen. `hdr` is the format of the HDR frame.
+    pub fn of(programs: &Programs, frame: &'a Frame, hdr: wgpu::TextureFormat, cut: &Cut) -> Result<Self, RuntimeError> {
+        let mut used = used_materials(frame)?;
+        used.retain(|id| !cut.lacks(*id));
+        let display = frame.display.as_ref().filter(|_| !cut.lacks(frame.materials.len()));
+        let shown = used.iter().map(|id| &frame.materials[*id]).chain(display);
         programs.get_many(shown.map(|m| ((*m.recipe).clone(), "main".to_owned())))?;
         let bounds = world_bounds(&frame.draws);
         let scene = scene_bounds(frame, &bounds);
@@ -50,13 +55,14 @@ impl<'a> Plan<'a> {
             forward: vec![None; frame.materials.len()],
             maps: Vec::new(),
             casters: IndexMap::new(),
+            waiting_casters: Vec::new(),
             display: None,
             before: Vec::new(),
             after: Vec::new(),
-            list: List::of_camera(&frame.draws, &bounds, &eye),
+            list: List::of_camera(&frame.draws, &bounds, &eye, cut),
             eye,
             map_lists: Vec::new(),
-            hdr: hdr_format(gpu, frame.draws.iter().any(|d| d.visible && d.alpha_blend)),
+            hdr,
         };
         for id in used {
             let material = &frame.materials[id];
@@ -73,7 +79,7 @@ impl<'a> Plan<'a> {
             plan.before.extend(computes(programs, &look)?);
             plan.forward[id] = Some(look);
         }
-        if let Some(material) = &frame.display {
+        if let Some(material) = display {
             let look = Look {
                 id: frame.materials.len(),
                 root: (*material.recipe).clone(),
@@ -85,15 +91,15 @@ impl<'a> Plan<'a> {
             plan.display = Some(look);
         }
         for map in &plan.maps {
-            let of = |eye| List::of_casters(&frame.draws, &bounds, eye);
+            let of = |eye| List::of_casters(&frame.draws, &bounds, eye, cut);
             plan.map_lists.push(map.eyes.iter().map(of).collect());
         }
-        plan.casters = plan.find_casters(programs, frame)?;
+        plan.find_casters(programs, frame, cut)?;
         Ok(plan)
     }
 
     /// The programs that draw materials into maps.
-    fn find_casters(&self, programs: &Programs, frame: &Frame) -> Result<IndexMap<(usize, usize), Look<'a>>, RuntimeError> {
+    fn find_casters(&mut self, programs: &Programs, frame: &Frame, cut: &Cut) -> Result<(), RuntimeError> {
         let mut wanted = IndexMap::new();
         for (index, (map, lists)) in self.maps.iter().zip(&self.map_lists).enumerate() {
             for run in lists.iter().flat_map(|list| &list.runs) {
@@ -105,22 +111,30 @@ impl<'a> Plan<'a> {
                 }
             }
         }
-        programs.get_many(wanted.values().map(|(root, _)| (root.clone(), "main".to_owned())))?;
-        let look = |(key, (root, main)): (_, (Node, &Look<'a>))| {
+        if !cut.at_once {
+            programs.get_many(wanted.values().map(|(root, _)| (root.clone(), "main".to_owned())))?;
+        }
+        let (mut casters, mut waiting) = (IndexMap::new(), Vec::new());
+        for (key, (root, main)) in wanted {
+            if cut.at_once && programs.find(&root, "main").is_none() {
+                waiting.push((main.id, root));
+                continue;
+            }
             let look = Look {
                 program: programs.get(&root, "main")?,
                 root,
                 maps: Vec::new(),
                 ..main.clone()
             };
-            Ok((key, look))
-        };
-        wanted.into_iter().map(look).collect()
+            casters.insert(key, look);
+        }
+        (self.casters, self.waiting_casters) = (casters, waiting);
+        Ok(())
     }
 }
 
 /// Materials of draws that are shown or cast, checked.
-fn used_materials(frame: &Frame) -> Result<Vec<usize>, DataError> {
+pub(crate) fn used_materials(frame: &Frame) -> Result<Vec<usize>, DataError> {
     let mut used = vec![false; frame.materials.len()];
     for (i, draw) in frame.draws.iter().enumerate() {
         let Some(seen) = used.get_mut(draw.material) else {
@@ -141,12 +155,26 @@ fn used_materials(frame: &Frame) -> Result<Vec<usize>, DataError> {
     Ok((0..used.len()).filter(|i| used[*i]).collect())
 }
 
+/// What the compiler calls a pass.
+fn name_of(pass: &Pass) -> String {
+    format!("{}.{}", pass.instance, pass.name)
+}
+
+/// Names of the compute passes that a program's modules declare, in their order.
+pub(crate) fn compute_passes(program: &Program) -> Vec<String> {
+    let passes = program.reflection().passes.iter();
+    passes
+        .filter(|pass| matches!(pass.declared, PassDecl::Compute { .. }))
+        .map(name_of)
+        .collect()
+}
+
 /// The compute passes that a program's modules declare, in their order.
 fn computes<'a>(programs: &Programs, look: &Look<'a>) -> Result<Vec<Compute<'a>>, RuntimeError> {
     let mut computes = Vec::new();
     for pass in &look.program.reflection().passes {
         if let PassDecl::Compute { entry, over } = &pass.declared {
-            let program = programs.get(&look.root, &format!("{}.{}", pass.instance, pass.name))?;
+            let program = programs.get(&look.root, &name_of(pass))?;
             let entry = program.reflection().entry_points.first().map_or(entry, |e| &e.name).clone();
             computes.push(Compute {
                 entry,

@@ -48,13 +48,18 @@ impl Programs {
         Ok(Arc::clone(lock(&self.made).entry(key).or_insert(program)))
     }
 
+    /// The program of a pass, if it has been compiled.
+    pub fn find(&self, root: &Node, pass: &str) -> Option<Arc<Program>> {
+        lock(&self.made).get(&(text_of(root), pass.to_owned())).map(Arc::clone)
+    }
+
     /// Compiles many on all cores, equal ones once.
     ///
     /// The error is that of the first wanted, whichever thread was first.
     pub fn get_many(&self, wanted: impl Iterator<Item = (Node, String)>) -> Result<(), Report> {
         let mut distinct: Vec<(Node, String)> = Vec::new();
         for item in wanted {
-            if !distinct.contains(&item) {
+            if !distinct.contains(&item) && self.find(&item.0, &item.1).is_none() {
                 distinct.push(item);
             }
         }

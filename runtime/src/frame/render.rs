@@ -6,28 +6,45 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use rayon::prelude::*;
+use shadewright_compiler::Validated;
 use shadewright_compiler::catalog::Catalog;
 use shadewright_compiler::manifest::Node;
 use shadewright_compiler::program::Program;
 
 use super::Frame;
-use super::draw::{CASTER, Drawing, SCREEN, request, scene_state};
+use super::draw::Drawing;
 use super::fill::{Filler, Kept};
+use super::jobs::Jobs;
+use super::list::Cut;
 use super::maps::{DEPTH, Map};
+use super::needs::{distinct, requests};
 use super::plan::Plan;
 use super::programs::Programs;
-use super::target::{DISPLAY, Targets, target};
+use super::target::{DISPLAY, HdrFormats, Targets, target};
 use super::upload::Uploads;
-use crate::gpu::pipeline::{Counts, Pipelines};
-use crate::gpu::{Gpu, GpuError, RuntimeError};
+use crate::gpu::pipeline::Pipelines;
+use crate::gpu::{Counts, Gpu, GpuError, RuntimeError};
+
+/// What a frame is drawn into.
+pub(super) struct Made {
+    pub hdr: wgpu::Texture,
+    pub display: Option<wgpu::Texture>,
+    /// Shadow maps.
+    pub depths: Vec<wgpu::Texture>,
+    pub hdr_view: wgpu::TextureView,
+    pub depth_view: wgpu::TextureView,
+}
 
 /// Draws frames on one device. What it compiles, makes and uploads is kept for the next frame.
 pub struct Renderer {
-    gpu: Gpu,
-    programs: Programs,
-    pipelines: Pipelines,
+    pub(super) gpu: Gpu,
+    pub(super) programs: Arc<Programs>,
+    pub(super) pipelines: Arc<Pipelines>,
+    pub(super) jobs: Jobs,
     uploads: Uploads,
     kept: Kept,
+    formats: Option<HdrFormats>,
 }
 
 impl Renderer {
@@ -35,10 +52,12 @@ impl Renderer {
     pub fn new(gpu: &Gpu, catalog: Arc<Catalog>) -> Self {
         Self {
             gpu: gpu.clone(),
-            programs: Programs::new(catalog),
-            pipelines: Pipelines::new(gpu),
+            programs: Arc::new(Programs::new(catalog)),
+            pipelines: Arc::new(Pipelines::new(gpu)),
+            jobs: Jobs::default(),
             uploads: Uploads::default(),
             kept: Kept::new(),
+            formats: None,
         }
     }
 
@@ -65,13 +84,13 @@ impl Renderer {
         Ok(self.programs.get(recipe, "main")?)
     }
 
-    /// Makes everything that a frame will need, on all cores: programs and pipelines.
+    /// Draws with this module instead of the program's own, however it was made: for holding another way to link against ours. Say so before
+    /// the first frame. It must have the program's entry points, and what it reads must be bound where the program binds it.
     ///
     /// # Errors
-    /// As for [`Renderer::render`].
-    pub fn prepare(&self, frame: &Frame) -> Result<(), RuntimeError> {
-        let plan = Plan::of(&self.gpu, &self.programs, frame)?;
-        self.make_pipelines(frame, &plan)
+    /// wgpu rejects the module.
+    pub fn draw_with(&mut self, program: &Program, module: &Validated) -> Result<(), RuntimeError> {
+        Ok(self.pipelines.draw_with(program, module)?)
     }
 
     /// Draws a frame. It stays on the GPU: see [`Targets`].
@@ -79,18 +98,61 @@ impl Renderer {
     /// # Errors
     /// A recipe or value is wrong, the frame's parts do not fit together, or the GPU fails.
     pub fn render(&mut self, frame: &Frame) -> Result<Targets, RuntimeError> {
+        let hdr = self.hdr(frame)?;
+        let plan = Plan::of(&self.programs, frame, hdr, &Cut::default())?;
+        let wanted = requests(&plan, frame)?;
+        let made: Vec<_> = distinct(&wanted).par_iter().map(|request| request.make(&self.pipelines)).collect();
+        made.into_iter().collect::<Result<(), GpuError>>()?;
+        self.show(frame, &plan)
+    }
+
+    /// Draws what is planned.
+    pub(super) fn show(&mut self, frame: &Frame, plan: &Plan) -> Result<Targets, RuntimeError> {
+        let made = self.draw(frame, plan, None, |drawing, made| {
+            drawing.shadow_maps(&made.depths)?;
+            drawing.compute(&plan.before, None)?;
+            drawing.scene(&made.hdr_view, &made.depth_view)?;
+            if let (Some(look), Some(texture)) = (&plan.display, &made.display) {
+                drawing.compute(&plan.after, Some(&made.hdr_view))?;
+                drawing.display(look, texture, &made.hdr_view)?;
+            }
+            Ok(())
+        })?;
+        Ok(Targets {
+            hdr: made.hdr,
+            display: made.display,
+        })
+    }
+
+    /// Format of the HDR frame.
+    pub(super) fn hdr(&mut self, frame: &Frame) -> Result<wgpu::TextureFormat, RuntimeError> {
         self.gpu.check()?;
-        let plan = Plan::of(&self.gpu, &self.programs, frame)?;
-        self.make_pipelines(frame, &plan)?;
+        let gpu = &self.gpu;
+        Ok(self.formats.get_or_insert_with(|| HdrFormats::of(gpu)).format(frame))
+    }
+
+    /// Makes targets, has them drawn into, and submits. Buffers that modules keep are in `kept`, or else those of the renderer.
+    pub(super) fn draw<'p>(
+        &mut self,
+        frame: &'p Frame,
+        plan: &'p Plan<'p>,
+        kept: Option<&mut Kept>,
+        passes: impl FnOnce(&mut Drawing, &Made) -> Result<(), RuntimeError>,
+    ) -> Result<Made, RuntimeError> {
         let hdr = target(&self.gpu, plan.hdr, frame.size)?;
         let depth = target(&self.gpu, DEPTH, frame.size)?;
-        let display = plan.display.as_ref().map(|_| target(&self.gpu, DISPLAY, frame.size)).transpose()?;
-        let depths = plan.maps.iter().map(|map| self.depth_array(map)).collect::<Result<Vec<_>, _>>()?;
+        let made = Made {
+            display: plan.display.as_ref().map(|_| target(&self.gpu, DISPLAY, frame.size)).transpose()?,
+            depths: plan.maps.iter().map(|map| self.depth_array(map)).collect::<Result<Vec<_>, _>>()?,
+            hdr_view: hdr.create_view(&wgpu::TextureViewDescriptor::default()),
+            depth_view: depth.create_view(&wgpu::TextureViewDescriptor::default()),
+            hdr,
+        };
         self.uploads.begin();
         let mut drawing = Drawing {
             pipelines: &self.pipelines,
             frame,
-            plan: &plan,
+            plan,
             commands: self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default()),
             passes: 0,
             fill: Filler {
@@ -98,47 +160,20 @@ impl Renderer {
                 programs: &self.programs,
                 frame,
                 maps: &plan.maps,
-                depths: &depths,
+                depths: &made.depths,
                 uploads: &mut self.uploads,
-                kept: &mut self.kept,
+                kept: kept.unwrap_or(&mut self.kept),
                 memo: HashMap::new(),
             },
+            least: false,
         };
-        drawing.shadow_maps(&depths)?;
-        drawing.compute(&plan.before, None)?;
-        let hdr_view = hdr.create_view(&wgpu::TextureViewDescriptor::default());
-        let depth_view = depth.create_view(&wgpu::TextureViewDescriptor::default());
-        drawing.scene(&hdr_view, &depth_view)?;
-        if let (Some(look), Some(texture)) = (&plan.display, &display) {
-            drawing.compute(&plan.after, Some(&hdr_view))?;
-            drawing.display(look, texture, &hdr_view)?;
-        }
+        passes(&mut drawing, &made)?;
         let commands = drawing.commands;
         self.gpu.scoped("frame", |_| {
             self.gpu.queue().submit([commands.finish()]);
         })?;
         self.uploads.end();
-        Ok(Targets { hdr, display })
-    }
-
-    fn make_pipelines(&self, frame: &Frame, plan: &Plan) -> Result<(), RuntimeError> {
-        let mut requests = Vec::new();
-        for run in &plan.list.runs {
-            let draw = &frame.draws[run.draw];
-            if let Some(look) = &plan.forward[draw.material] {
-                requests.push(request(look, scene_state(draw, plan.hdr))?);
-            }
-        }
-        for look in plan.casters.values() {
-            requests.push(request(look, CASTER)?);
-        }
-        if let Some(look) = &plan.display {
-            requests.push(request(look, SCREEN)?);
-        }
-        requests.sort_by_key(|r| (r.program.hash(), r.state.blend, r.state.cull_back, r.state.mirrored));
-        requests.dedup_by(|a, b| a.program.hash() == b.program.hash() && a.state == b.state && a.constants == b.constants);
-        self.pipelines.render_many(&requests)?;
-        Ok(())
+        Ok(made)
     }
 
     fn depth_array(&self, map: &Map) -> Result<wgpu::Texture, RuntimeError> {

@@ -2,6 +2,7 @@
 
 use half::f16;
 
+use super::Frame;
 use crate::gpu::{DataError, Gpu, RuntimeError};
 
 /// A drawn frame, still on the GPU.
@@ -17,15 +18,33 @@ pub struct Targets {
 /// Format of the display image.
 pub(crate) const DISPLAY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Format of the HDR frame on this GPU; `blend` says that something is drawn over what is there.
-pub(crate) fn hdr_format(gpu: &Gpu, blend: bool) -> wgpu::TextureFormat {
-    let full = wgpu::TextureFormat::Rgba32Float;
-    let blends = gpu.device().features().contains(wgpu::Features::FLOAT32_BLENDABLE);
-    let draws = gpu.scoped("HDR target", |device| drop(texture(device, full, [1, 1])));
-    if draws.is_ok() && (blends || !blend) {
-        full
-    } else {
-        wgpu::TextureFormat::Rgba16Float
+/// Format of the HDR frame on a GPU that can draw and blend into 32-bit floats.
+pub(crate) const FULL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// What a GPU can draw the HDR frame into.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HdrFormats {
+    draws: bool,
+    blends: bool,
+}
+
+impl HdrFormats {
+    /// Asks the GPU. Where it is lost, the answer is the smaller format, and whatever comes next says that it is lost.
+    pub fn of(gpu: &Gpu) -> Self {
+        Self {
+            draws: gpu.scoped("HDR target", |device| drop(texture(device, FULL, [1, 1]))).is_ok(),
+            blends: gpu.device().features().contains(wgpu::Features::FLOAT32_BLENDABLE),
+        }
+    }
+
+    /// The format for a frame.
+    pub fn format(self, frame: &Frame) -> wgpu::TextureFormat {
+        let blend = frame.draws.iter().any(|d| d.visible && d.alpha_blend);
+        if self.draws && (self.blends || !blend) {
+            FULL
+        } else {
+            wgpu::TextureFormat::Rgba16Float
+        }
     }
 }
 

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::{Mat4, Vec3};
 use shadewright_compiler::manifest::Node;
 
-use super::{Bounds, Camera, Draw, Frame, Material, Mesh, Renderer, Settings};
+use super::jobs::{Job, Task};
+use super::{Bounds, Camera, Draw, Fallback, Fallbacks, Frame, Material, Mesh, Part, Renderer, Settings};
 use crate::gpu::testing::{catalog, gpu};
 use crate::gpu::{Gpu, GpuError, RuntimeError};
 
@@ -31,15 +32,41 @@ const DISPLAY_PASS: &str = "
         return Color(vec4f(textureLoad(hdr, vec2u(in.at.xy), 0).rgb / 20.0, 1.0));
     }";
 
+const COUNT_RON: &str = r#"(
+    summary: "tested",
+    resources: {"total": (kind: Buffer(bytes: 4), doc: "tested")},
+    passes: {"add": Compute(entry: "add", over: Once)},
+)"#;
+
+/// Shows how often its compute pass ran, in 255ths.
+const COUNT: &str = "
+    struct In { @builtin(vertex_index) i: u32 }
+    struct At { @builtin(position) at: vec4f }
+    struct Color { @location(0) color: vec4f }
+    struct Total { frames: u32 }
+    var<storage, read_write> total: Total;
+    @compute @workgroup_size(1) fn add() { total.frames += 1u; }
+    @vertex fn vertex_main(in: In) -> At {
+        return At(vec4f(f32(in.i & 1u) * 4.0 - 1.0, f32(in.i >> 1u) * 4.0 - 1.0, 0.0, 1.0));
+    }
+    @fragment fn fragment_main() -> Color { return Color(vec4f(f32(total.frames) / 255.0)); }";
+
 fn renderer(gpu: &Gpu) -> Renderer {
     let textured = FORWARD
         .replace("position: vec3f }", "position: vec3f, @location(3) uv: vec2f }")
         .replace("in.position,", "in.position + in.uv.xxx,");
+    let wrong = FORWARD
+        .replace("color: vec4f", "color: vec4u")
+        .replace("vec4f(in.place, 0.25)", "vec4u(vec3u(in.place), 1u)");
     let catalog = catalog(&[
         ("pass/flat/module.ron", "(summary: \"tested\")"),
         ("pass/flat/flat.wgsl", FORWARD),
         ("pass/show/module.ron", "(summary: \"tested\", uses: [\"post\"])"),
         ("pass/show/show.wgsl", DISPLAY_PASS),
+        ("pass/count/module.ron", COUNT_RON),
+        ("pass/count/count.wgsl", COUNT),
+        ("pass/wrong/module.ron", "(summary: \"tested\")"),
+        ("pass/wrong/wrong.wgsl", &wrong),
         ("pass/textured/module.ron", "(summary: \"tested\")"),
         ("pass/textured/textured.wgsl", &textured),
     ]);
@@ -205,4 +232,118 @@ fn lost_device_is_an_error_and_a_new_one_draws_the_same() {
         assert!(matches!(result, Err(RuntimeError::Gpu(GpuError::Lost(_)))), "{result:?}");
     }
     assert_eq!(draw_on(&Gpu::headless().unwrap()).unwrap(), before);
+}
+
+/// Catches a preparation that leaves a trace in what modules keep from frame to frame, and buffers that are not kept.
+#[test]
+fn a_preparation_does_not_count_as_a_frame() {
+    let mut frame = frame(vec![]);
+    frame.display = Some(material("count"));
+    let mut renderer = renderer(&gpu());
+    let next = |renderer: &mut Renderer| renderer.render(&frame).unwrap().read_display(&gpu()).unwrap().unwrap()[0];
+    renderer.prepare(&frame).unwrap();
+    assert_eq!(next(&mut renderer), 1);
+    renderer.prepare(&frame).unwrap();
+    assert_eq!(next(&mut renderer), 2);
+}
+
+/// Catches a fallback that is compiled while the special is, and takes its time.
+#[test]
+fn a_fallback_is_made_only_where_nothing_better_comes() {
+    let mut renderer = renderer(&gpu());
+    let mut frame = frame(vec![draw(&square(), at(0.0, 0.0, -1.0))]);
+    frame.display = None;
+    let fallbacks = Fallbacks {
+        otherwise: vec![Fallback::Material(material("show")), Fallback::Material(material("count"))],
+        ..Fallbacks::default()
+    };
+    assert!(renderer.settle(&frame, &fallbacks).unwrap().is_empty());
+    let there = |name| renderer.programs.find(&Node::new(name), "main").is_some();
+    assert!(there("flat") && !there("show") && !there("count"));
+    assert_eq!(renderer.pipeline_counts().misses, 1);
+}
+
+/// Jobs that run until what is returned is dropped: as many as there can be threads.
+fn hold(renderer: &mut Renderer) -> std::sync::mpsc::Sender<()> {
+    let (go, wait) = std::sync::mpsc::channel::<()>();
+    let wait = Arc::new(std::sync::Mutex::new(wait));
+    let threads = std::thread::available_parallelism()
+        .map_or(1, usize::from)
+        .saturating_sub(1)
+        .clamp(1, 8);
+    let begun = Arc::new(std::sync::Barrier::new(threads + 1));
+    let jobs = (0..threads).map(|i| -> (Task, Job) {
+        let (begun, wait) = (Arc::clone(&begun), Arc::clone(&wait));
+        let job = move || {
+            begun.wait();
+            let _ = crate::gpu::lock(&wait).recv();
+            Ok(())
+        };
+        (Task::Program(format!("held {i}"), String::new()), Box::new(job))
+    });
+    renderer.jobs.want(jobs.collect()).unwrap();
+    begun.wait();
+    go
+}
+
+/// Catches a frame that waits for the threads that compile, a cancelled special that is made all the same, and a frame after that which
+/// does not ask for it again.
+#[test]
+fn a_cancelled_special_is_made_when_it_is_asked_for_again() {
+    let mut renderer = renderer(&gpu());
+    let mut frame = frame(vec![draw(&square(), at(0.0, 0.0, -1.0))]);
+    frame.display = None;
+    let general = frame.clone();
+    renderer.prepare(&general).unwrap();
+    frame.draws[0].double_sided = true;
+    frame.materials = vec![material("textured")];
+    let textured = Mesh {
+        uvs: vec![[0.0; 2]; 4],
+        ..Mesh::clone(&frame.draws[0].mesh)
+    };
+    frame.draws[0].mesh = Arc::new(textured);
+    let mut flat = general.clone();
+    flat.draws.clone_from(&frame.draws);
+    renderer.prepare(&flat).unwrap();
+    let there = renderer.pipeline_counts().misses;
+    let fallbacks = Fallbacks {
+        otherwise: vec![Fallback::Material(material("flat"))],
+        ..Fallbacks::default()
+    };
+    let go = hold(&mut renderer);
+    for _ in 0..2 {
+        let (targets, late) = renderer.render_now(&frame, &fallbacks).unwrap();
+        assert_eq!((late[0].part, late[0].shown, late[0].compiling), (Part::Material(0), Some(0), true));
+        let hdr = targets.read_hdr(&gpu()).unwrap();
+        assert_eq!(texel(&hdr, 0.0, 0.0), [0.0, 8.0, -1.0, 0.25], "the fallback's picture");
+    }
+    renderer.cancel();
+    drop(go);
+    renderer.jobs.wait();
+    assert_eq!(renderer.pipeline_counts().misses, there);
+    assert!(renderer.programs.find(&Node::new("textured"), "main").is_none());
+    assert!(renderer.settle(&frame, &fallbacks).unwrap().is_empty());
+    assert_eq!(renderer.pipeline_counts().misses, there + 1);
+}
+
+/// Catches wgpu's refusal of a special pipeline that comes as a failed frame, or not at all.
+#[test]
+fn a_pipeline_that_fails_is_reported_and_its_fallback_stays() {
+    let mut renderer = renderer(&gpu());
+    let mut frame = frame(vec![draw(&square(), at(0.0, 0.0, -1.0))]);
+    frame.materials = vec![material("wrong")];
+    let fallbacks = Fallbacks {
+        otherwise: vec![Fallback::Material(material("flat"))],
+        ..Fallbacks::default()
+    };
+    let late = renderer.settle(&frame, &fallbacks).unwrap();
+    let error = late[0].error.as_deref();
+    assert!(
+        matches!(error, Some(RuntimeError::Gpu(GpuError::Invalid { what, .. })) if what == "render pipeline vertex_main"),
+        "{error:?}"
+    );
+    assert_eq!((late.len(), late[0].shown, late[0].compiling), (1, Some(0), false));
+    let hdr = renderer.render_now(&frame, &fallbacks).unwrap().0.read_hdr(&gpu()).unwrap();
+    assert_eq!(texel(&hdr, 0.0, 0.0), [0.0, 8.0, -1.0, 0.25]);
+    assert_eq!(gpu().check(), Ok(()));
 }

@@ -36,7 +36,7 @@ fn entry(binding: &Binding) -> Result<wgpu::BindGroupLayoutEntry, GpuError> {
     let buffer = |ty, layout: &Layout| wgpu::BindingType::Buffer {
         ty,
         has_dynamic_offset: false,
-        min_binding_size: NonZeroU64::new(smallest_size(layout)),
+        min_binding_size: NonZeroU64::new(layout.smallest_size()),
     };
     let ty = match &binding.ty {
         BindingType::Uniform { layout } => buffer(wgpu::BufferBindingType::Uniform, layout),
@@ -90,17 +90,6 @@ fn is_linear(fill: &Fill) -> bool {
             ..
         }
     )
-}
-
-/// Fewest bytes that a binding of this layout may have: a runtime-sized array counts with one element.
-pub fn smallest_size(layout: &Layout) -> u64 {
-    if let Some(last) = layout.members.last() {
-        return u64::from(layout.size).max(u64::from(last.offset) + smallest_size(&last.layout));
-    }
-    match (&layout.element, layout.count, layout.stride) {
-        (Some(_), None, Some(stride)) => u64::from(stride),
-        _ => u64::from(layout.size),
-    }
 }
 
 fn sample_type(sample: &str) -> Option<wgpu::TextureSampleType> {

@@ -2,6 +2,7 @@
 
 mod device;
 mod error;
+mod kept;
 pub mod layout;
 pub mod pack;
 pub mod pipeline;
@@ -14,4 +15,5 @@ pub(crate) mod value;
 pub use device::Gpu;
 pub(crate) use device::lock;
 pub use error::{DataError, GpuError, RuntimeError};
+pub use kept::Counts;
 pub use probe::{Names, evaluate, probe};

@@ -3,27 +3,27 @@
 //! Programs with equal canonical hashes share shader modules and pipelines, whatever recipes they came from.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
-use std::hash::Hash;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use rayon::prelude::*;
+use shadewright_compiler::Validated;
 use shadewright_compiler::program::Program;
 use shadewright_compiler::reflect::{EntryPoint, Stage};
 
-use super::device::lock;
+use super::kept::{Counts, Kept};
 use super::layout::{GROUPS, bind_group_entries};
 use super::{Gpu, GpuError};
 
 /// Fixed-function state of a render pipeline; with the program and its constants it is the cache's key.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
 pub struct RenderState {
     /// Colour target; `None` for a depth-only pass.
+    #[serde(serialize_with = "format_name")]
     pub color: Option<wgpu::TextureFormat>,
     /// Blend over what is there by the written alpha (not premultiplied).
     pub blend: bool,
     /// Depth target, compared with less; `None` for no depth test.
+    #[serde(serialize_with = "format_name")]
     pub depth: Option<wgpu::TextureFormat>,
     /// Write depth.
     pub depth_write: bool,
@@ -31,6 +31,12 @@ pub struct RenderState {
     pub cull_back: bool,
     /// The front is where the corners run clockwise: the transform mirrors.
     pub mirrored: bool,
+}
+
+/// WebGPU's name of a format: `rgba32float`.
+#[allow(clippy::ref_option)] // serde's signature
+fn format_name<S: serde::Serializer>(format: &Option<wgpu::TextureFormat>, to: S) -> Result<S::Ok, S::Error> {
+    serde::Serialize::serialize(&format.map(|f| format!("{f:?}").to_lowercase()), to)
 }
 
 /// Values of pipeline-overridable constants by key; what is not here keeps its default.
@@ -70,48 +76,14 @@ struct Key<S> {
     state: S,
 }
 
-/// A value that is made once.
-type Cell<V> = Arc<Mutex<Option<Arc<V>>>>;
-
-/// A map whose values are made at most once each; threads that want the same one wait for the first.
-#[derive(Debug)]
-struct Kept<K, V> {
-    cells: Mutex<HashMap<K, Cell<V>>>,
-    hits: AtomicUsize,
-    misses: AtomicUsize,
-}
-
-impl<K: Eq + Hash, V> Kept<K, V> {
-    fn new() -> Self {
+impl<S> Key<S> {
+    fn new(program: &Program, state: S, constants: &Constants) -> Self {
         Self {
-            cells: Mutex::default(),
-            hits: AtomicUsize::new(0),
-            misses: AtomicUsize::new(0),
+            hash: program.hash(),
+            constants: bits(constants),
+            state,
         }
     }
-
-    /// The value; `make` runs if there is none. What fails is not kept.
-    fn get(&self, key: K, make: impl FnOnce() -> Result<V, GpuError>) -> Result<Arc<V>, GpuError> {
-        let cell = Arc::clone(lock(&self.cells).entry(key).or_default());
-        let mut cell = lock(&cell);
-        if let Some(value) = &*cell {
-            self.hits.fetch_add(1, Ordering::Relaxed);
-            return Ok(Arc::clone(value));
-        }
-        self.misses.fetch_add(1, Ordering::Relaxed);
-        let value = Arc::new(make()?);
-        *cell = Some(Arc::clone(&value));
-        Ok(value)
-    }
-}
-
-/// How often something was found and made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Requests answered from the cache.
-    pub hits: usize,
-    /// Requests that made something.
-    pub misses: usize,
 }
 
 /// The pipelines of one device.
@@ -136,11 +108,20 @@ impl Pipelines {
 
     /// Render and compute pipelines found and made so far.
     pub fn counts(&self) -> Counts {
-        let all = [(&self.render.hits, &self.render.misses), (&self.compute.hits, &self.compute.misses)];
-        all.into_iter().fold(Counts::default(), |sum, (hits, misses)| Counts {
-            hits: sum.hits + hits.load(Ordering::Relaxed),
-            misses: sum.misses + misses.load(Ordering::Relaxed),
-        })
+        let (render, compute) = (self.render.counts(), self.compute.counts());
+        Counts {
+            hits: render.hits + compute.hits,
+            misses: render.misses + compute.misses,
+        }
+    }
+
+    /// Takes this module wherever the program's own would be taken, however it was made. It must have the program's entry points, and what
+    /// it reads must be bound where the program binds it. Pipelines that were made before stay.
+    ///
+    /// # Errors
+    /// wgpu rejects the module.
+    pub fn draw_with(&self, program: &Program, module: &Validated) -> Result<(), GpuError> {
+        self.shaders.get(program.hash(), || self.make_shader(program, module)).map(drop)
     }
 
     /// One render pipeline.
@@ -149,12 +130,14 @@ impl Pipelines {
     /// wgpu rejects it, or the program has no vertex entry point.
     pub fn render(&self, request: &RenderRequest) -> Result<Arc<RenderPipeline>, GpuError> {
         let RenderRequest { program, state, constants } = request;
-        let key = Key {
-            hash: program.hash(),
-            constants: bits(constants),
-            state: *state,
-        };
-        self.render.get(key, || self.make_render(program, *state, constants))
+        self.render.get(Key::new(program, *state, constants), || {
+            self.make_render(program, *state, constants)
+        })
+    }
+
+    /// Whether a render pipeline is there. One that is being made is not.
+    pub fn has_render(&self, request: &RenderRequest) -> bool {
+        self.render.has(&Key::new(request.program, request.state, &request.constants))
     }
 
     /// Many render pipelines at once, on all cores; equal requests are made once.
@@ -171,12 +154,7 @@ impl Pipelines {
     /// # Errors
     /// wgpu rejects it.
     pub fn compute(&self, program: &Program, entry: &str, constants: &Constants) -> Result<Arc<ComputePipeline>, GpuError> {
-        let key = Key {
-            hash: program.hash(),
-            constants: bits(constants),
-            state: entry.to_owned(),
-        };
-        self.compute.get(key, || {
+        self.compute.get(Key::new(program, entry.to_owned(), constants), || {
             let shader = self.shader(program)?;
             let (groups, layout) = self.layouts(program)?;
             let constants = borrowed(constants);
@@ -198,14 +176,20 @@ impl Pipelines {
         })
     }
 
+    /// Whether the compute pipeline of an entry point is there. One that is being made is not.
+    pub fn has_compute(&self, program: &Program, entry: &str, constants: &Constants) -> bool {
+        self.compute.has(&Key::new(program, entry.to_owned(), constants))
+    }
+
     fn shader(&self, program: &Program) -> Result<Arc<wgpu::ShaderModule>, GpuError> {
-        self.shaders.get(program.hash(), || {
-            let module = program.validated().module().clone();
-            self.gpu.scoped("shader module", |device| {
-                device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                    label: Some(&program.reflection().pass),
-                    source: wgpu::ShaderSource::Naga(Cow::Owned(module)),
-                })
+        self.shaders.get(program.hash(), || self.make_shader(program, program.validated()))
+    }
+
+    fn make_shader(&self, program: &Program, module: &Validated) -> Result<wgpu::ShaderModule, GpuError> {
+        self.gpu.scoped("shader module", |device| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(&program.reflection().pass),
+                source: wgpu::ShaderSource::Naga(Cow::Owned(module.module().clone())),
             })
         })
     }
@@ -329,7 +313,8 @@ fn attributes(vertex: &EntryPoint) -> Result<Vec<wgpu::VertexAttribute>, GpuErro
     vertex.inputs.iter().map(attribute).collect()
 }
 
-fn bits(constants: &Constants) -> Vec<(String, u64)> {
+/// Overridden constants as a key: sorted, values by their bits.
+pub(crate) fn bits(constants: &Constants) -> Vec<(String, u64)> {
     let mut bits: Vec<_> = constants.iter().map(|(name, value)| (name.clone(), value.to_bits())).collect();
     bits.sort();
     bits

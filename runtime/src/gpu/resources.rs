@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 use shadewright_compiler::manifest::{Param, Value};
 use shadewright_compiler::reflect::{Binding, BindingType, Layout, ParamPlace, ParamUse, Reflection};
 
-use super::layout::{GROUPS, smallest_size, view_dimension};
+use super::layout::{GROUPS, view_dimension};
 use super::pack::{put_numbers, size_with, unknown};
 use super::pipeline::{Constants, Pipeline};
 use super::value::numbers;
@@ -150,9 +150,9 @@ pub fn sampler(gpu: &Gpu, linear: bool, repeat: bool, compare: bool) -> Result<B
 pub fn stand_in(gpu: &Gpu, binding: &Binding) -> Result<Bound, RuntimeError> {
     use wgpu::BufferUsages as U;
     Ok(match &binding.ty {
-        BindingType::Uniform { layout } => Bound::Buffer(gpu.buffer(&binding.name, U::UNIFORM, &[], smallest_size(layout))?),
+        BindingType::Uniform { layout } => Bound::Buffer(gpu.buffer(&binding.name, U::UNIFORM, &[], layout.smallest_size())?),
         BindingType::Storage { layout, .. } => {
-            Bound::Buffer(gpu.buffer(&binding.name, U::STORAGE | U::COPY_SRC, &[], smallest_size(layout))?)
+            Bound::Buffer(gpu.buffer(&binding.name, U::STORAGE | U::COPY_SRC, &[], layout.smallest_size())?)
         }
         BindingType::Texture { dimension, sample, .. } => Bound::Texture(plain_texture(gpu, binding, dimension, sample)?),
         BindingType::Sampler { comparison } => sampler(gpu, *comparison, false, *comparison)?,

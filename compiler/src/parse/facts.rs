@@ -1,0 +1,330 @@
+//! What can be said of a function whatever it is linked to: found once, when its unit is parsed, so that planning a
+//! permutation looks at lists instead of walking statements.
+
+use std::ops::Range;
+
+use naga::{Block, Expression, Handle, Statement, TypeInner};
+use rustc_hash::FxHashMap as HashMap;
+
+use super::branches::{Choice, choice, reachable};
+use super::operands::statement_operands;
+use super::pure::writes_only_own;
+use super::unit::Unit;
+
+/// A store, and the struct members that its pointer leads through, the innermost first.
+#[derive(Debug)]
+pub struct Store {
+    /// Where to.
+    pub pointer: Handle<Expression>,
+    /// What.
+    pub value: Handle<Expression>,
+    /// Struct type in the unit, member.
+    pub path: Vec<(Handle<naga::Type>, u32)>,
+}
+
+/// A call.
+#[derive(Debug)]
+pub struct Call {
+    /// Of what.
+    pub callee: Handle<naga::Function>,
+    /// With what.
+    pub arguments: Vec<Handle<Expression>>,
+    /// What it gives.
+    pub result: Option<Handle<Expression>>,
+}
+
+/// What an expression's text does beside giving a value.
+#[derive(Debug)]
+pub enum Action {
+    /// It acts whatever is linked: an atomic operation, or a branch such as `a && f()`.
+    Always,
+    /// It acts if one of these calls does.
+    Calls(Vec<Handle<naga::Function>>),
+}
+
+/// Facts of one function. Statements behind a branch that is never taken have no part in them.
+#[derive(Debug)]
+pub struct Facts {
+    /// Functions that it calls, in the order of the text, each once.
+    pub callees: Vec<Handle<naga::Function>>,
+    /// Whether it writes nothing but its own variables, apart from what it calls.
+    pub writes_only_own: bool,
+    /// Values that its statements need, whatever else is needed.
+    pub reads: Vec<Handle<Expression>>,
+    /// Its stores.
+    pub stores: Vec<Store>,
+    /// Its calls, in the order of the text.
+    pub calls: Vec<Call>,
+    /// The call that gives a result.
+    pub call_of: HashMap<Handle<Expression>, usize>,
+    /// `let`s around something that may act.
+    pub lets: Vec<Handle<Expression>>,
+    /// What the texts of stored values, arguments, `let`s and members do. Most do nothing and are left out.
+    pub actions: HashMap<Handle<Expression>, Action>,
+    /// Module-scope variables that it names.
+    pub globals: Vec<(Handle<Expression>, Handle<naga::GlobalVariable>)>,
+    /// Types with structs in them, of its parameters, result and variables.
+    pub types: Vec<Handle<naga::Type>>,
+    /// The same of its expressions.
+    pub typed: Vec<(Handle<Expression>, Handle<naga::Type>)>,
+    /// Structs that a `const` among its statements names: such a constant leaves no trace in the IR, but stays in the text.
+    pub in_constants: Vec<Handle<naga::Type>>,
+}
+
+/// Facts of a unit's functions by handle, then of its entry points.
+pub fn facts(unit: &Unit) -> Vec<Facts> {
+    let functions = unit.ir.functions.iter().map(|(handle, function)| {
+        let name = function.name.as_deref().unwrap_or_default();
+        of_function(unit, function, &unit.info[handle], name)
+    });
+    let entries = unit.ir.entry_points.iter().enumerate();
+    let entries = entries.map(|(index, entry)| of_function(unit, &entry.function, unit.info.get_entry_point(index), &entry.name));
+    functions.chain(entries).collect()
+}
+
+fn of_function(unit: &Unit, function: &naga::Function, info: &naga::valid::FunctionInfo, name: &str) -> Facts {
+    let mut finder = Finder {
+        unit,
+        function,
+        info,
+        results: results(function),
+        reached: vec![false; function.expressions.len()],
+        facts: Facts {
+            callees: Vec::new(),
+            writes_only_own: writes_only_own(&unit.ir, function, &function.body),
+            reads: Vec::new(),
+            stores: Vec::new(),
+            calls: Vec::new(),
+            call_of: HashMap::default(),
+            lets: Vec::new(),
+            actions: HashMap::default(),
+            globals: Vec::new(),
+            types: Vec::new(),
+            typed: Vec::new(),
+            in_constants: in_constants(unit, name),
+        },
+    };
+    finder.block(&function.body);
+    finder.actions();
+    finder.types();
+    finder.facts
+}
+
+struct Finder<'u> {
+    unit: &'u Unit,
+    function: &'u naga::Function,
+    info: &'u naga::valid::FunctionInfo,
+    /// Results of statements, with their places.
+    results: Vec<(Handle<Expression>, Range<usize>)>,
+    /// Expressions that stand in branches that may be taken.
+    reached: Vec<bool>,
+    facts: Facts,
+}
+
+impl Finder<'_> {
+    fn block(&mut self, block: &Block) {
+        for (statement, _) in reachable(&self.unit.ir, self.function, block) {
+            self.statement(statement);
+        }
+    }
+
+    fn statement(&mut self, statement: &Statement) {
+        match statement {
+            Statement::Emit(range) => range.clone().for_each(|h| self.reached[h.index()] = true),
+            Statement::Break | Statement::Continue | Statement::Kill | Statement::ControlBarrier(_) | Statement::MemoryBarrier(_) => {}
+            Statement::Block(inner) => self.block(inner),
+            Statement::If { condition, accept, reject } => {
+                let choice = choice(&self.unit.ir, self.function, *condition, accept, reject);
+                if choice == Choice::Open {
+                    self.facts.reads.push(*condition);
+                }
+                if choice != Choice::Reject {
+                    self.block(accept);
+                }
+                if choice != Choice::Accept {
+                    self.block(reject);
+                }
+            }
+            Statement::Switch { selector, cases } => {
+                self.facts.reads.push(*selector);
+                cases.iter().for_each(|c| self.block(&c.body));
+            }
+            Statement::Loop {
+                body,
+                continuing,
+                break_if,
+            } => {
+                self.block(body);
+                self.block(continuing);
+                self.facts.reads.extend(break_if);
+            }
+            Statement::Return { value } => self.facts.reads.extend(value),
+            Statement::Store { pointer, value } => {
+                let path = self.path(*pointer);
+                self.facts.stores.push(Store {
+                    pointer: *pointer,
+                    value: *value,
+                    path,
+                });
+            }
+            Statement::Call {
+                function,
+                arguments,
+                result,
+            } => {
+                if !self.facts.callees.contains(function) {
+                    self.facts.callees.push(*function);
+                }
+                if let Some(result) = result {
+                    self.reached[result.index()] = true;
+                    self.facts.call_of.insert(*result, self.facts.calls.len());
+                }
+                self.facts.calls.push(Call {
+                    callee: *function,
+                    arguments: arguments.clone(),
+                    result: *result,
+                });
+            }
+            other => statement_operands(other, &mut |&h| {
+                self.reached[h.index()] = true;
+                self.facts.reads.push(h);
+            }),
+        }
+    }
+
+    fn path(&self, mut pointer: Handle<Expression>) -> Vec<(Handle<naga::Type>, u32)> {
+        let mut path = Vec::new();
+        loop {
+            match self.function.expressions[pointer] {
+                Expression::AccessIndex { base, index } => {
+                    path.extend(struct_type(self.unit, self.info, base).map(|ty| (ty, index)));
+                    pointer = base;
+                }
+                Expression::Access { base, .. } => pointer = base,
+                _ => return path,
+            }
+        }
+    }
+
+    fn actions(&mut self) {
+        let mut asked: Vec<Handle<Expression>> = Vec::new();
+        for store in &self.facts.stores {
+            asked.extend([store.pointer, store.value]);
+        }
+        for call in &self.facts.calls {
+            asked.extend(&call.arguments);
+        }
+        for (_, expression) in self.function.expressions.iter() {
+            if let Expression::Compose { ty, components } = expression
+                && self.unit.structs.contains_key(ty)
+            {
+                asked.extend(components);
+            }
+        }
+        let lets = self.function.named_expressions.keys().copied();
+        let lets: Vec<_> = lets.filter(|named| self.reached[named.index()]).collect();
+        asked.extend(&lets);
+        for handle in asked {
+            if let Some(action) = self.action(handle) {
+                self.facts.actions.insert(handle, action);
+            }
+        }
+        self.facts.lets = lets.into_iter().filter(|named| self.facts.actions.contains_key(named)).collect();
+    }
+
+    /// Whether the text of an expression holds a call, an atomic operation or the like.
+    fn action(&self, handle: Handle<Expression>) -> Option<Action> {
+        let span = self.function.expressions.get_span(handle).to_range()?;
+        // `a && f()` is a branch in the IR, which stays with all that it calls.
+        let text = self.unit.composed.text.get(span.clone()).unwrap_or_default();
+        if text.contains("&&") || text.contains("||") {
+            return Some(Action::Always);
+        }
+        let mut calls = Vec::new();
+        for (result, place) in &self.results {
+            let inside =
+                self.reached[result.index()] && result.index() <= handle.index() && span.start <= place.start && place.end <= span.end;
+            if inside {
+                match self.function.expressions[*result] {
+                    Expression::CallResult(callee) => calls.push(callee),
+                    _ => return Some(Action::Always),
+                }
+            }
+        }
+        (!calls.is_empty()).then_some(Action::Calls(calls))
+    }
+
+    fn types(&mut self) {
+        let (ir, function) = (&self.unit.ir, self.function);
+        let types = function.arguments.iter().map(|a| a.ty).chain(function.result.iter().map(|r| r.ty));
+        let types = types.chain(function.local_variables.iter().map(|(_, l)| l.ty));
+        self.facts.types = types.filter(|&ty| holds_struct(ir, ty)).collect();
+        for (handle, expression) in function.expressions.iter() {
+            let ty = match *expression {
+                Expression::GlobalVariable(global) => {
+                    self.facts.globals.push((handle, global));
+                    ir.global_variables[global].ty
+                }
+                Expression::Compose { ty, .. } | Expression::ZeroValue(ty) => ty,
+                _ => continue,
+            };
+            if holds_struct(ir, ty) {
+                self.facts.typed.push((handle, ty));
+            }
+        }
+    }
+}
+
+fn holds_struct(ir: &naga::Module, ty: Handle<naga::Type>) -> bool {
+    match ir.types[ty].inner {
+        TypeInner::Struct { .. } => true,
+        TypeInner::Array { base, .. } | TypeInner::Pointer { base, .. } => holds_struct(ir, base),
+        _ => false,
+    }
+}
+
+/// The declared struct that an expression is, or points to.
+pub fn struct_type(unit: &Unit, info: &naga::valid::FunctionInfo, handle: Handle<Expression>) -> Option<Handle<naga::Type>> {
+    let resolution = &info[handle].ty;
+    let ty = match *resolution.inner_with(&unit.ir.types) {
+        TypeInner::Pointer { base, .. } => base,
+        TypeInner::Struct { .. } => resolution.handle()?,
+        _ => return None,
+    };
+    unit.structs.contains_key(&ty).then_some(ty)
+}
+
+fn in_constants(unit: &Unit, name: &str) -> Vec<Handle<naga::Type>> {
+    let mut kept = Vec::new();
+    let Some(item) = unit.scan.item(name) else { return kept };
+    let word = |at: usize| &unit.file.text[unit.scan.tokens[at].range()];
+    for reference in item.references.iter().filter(|r| item.body.contains(&r.token)) {
+        let mut statement = (item.body.start..reference.token).rev().take_while(|&at| word(at) != ";");
+        if statement.any(|at| word(at) == "const") {
+            let named = unit.structs.iter().filter(|(_, key)| key.name == word(reference.token));
+            kept.extend(named.map(|(&ty, _)| ty));
+        }
+    }
+    kept.sort_unstable();
+    kept.dedup();
+    kept
+}
+
+fn results(function: &naga::Function) -> Vec<(Handle<Expression>, Range<usize>)> {
+    use naga::Expression as E;
+    let is_result = |e: &E| {
+        matches!(
+            e,
+            E::CallResult(_)
+                | E::AtomicResult { .. }
+                | E::WorkGroupUniformLoadResult { .. }
+                | E::RayQueryProceedResult
+                | E::SubgroupBallotResult
+                | E::SubgroupOperationResult { .. }
+        )
+    };
+    let found = function.expressions.iter().filter(|(_, e)| is_result(e));
+    found
+        .map(|(h, _)| (h, function.expressions.get_span(h).to_range().unwrap_or_default()))
+        .collect()
+}
