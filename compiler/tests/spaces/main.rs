@@ -211,8 +211,7 @@ fn a_recipe_is_a_space_of_one() {
 fn ranges_of_values() {
     let values = |param: &str, range: &str| -> Vec<String> {
         let text = value(&format!(r#"(module: "scaled", freeze: {{"{param}": {range}}})"#));
-        let found = space(&text).iter().unwrap().map(|p| p.choices[0].chosen.clone()).collect();
-        found
+        space(&text).iter().unwrap().map(|p| p.choices[0].chosen.clone()).collect()
     };
     assert_eq!(values("by", "(from: 0.0, to: 1.0, steps: 4)"), ["0", "0.25", "0.5", "0.75", "1"]);
     assert_eq!(values("by", "(from: 0.1, to: 0.7, step: 0.2)").len(), 4);
