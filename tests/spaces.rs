@@ -1,5 +1,5 @@
 //! The space of everything that the standard library can be put together to: its size, its pairwise cover, and what others say of that.
-#![allow(clippy::expect_used, clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::print_stdout)]
 
 #[path = "../compiler/tests/spaces/naive.rs"]
 mod naive;
