@@ -15,6 +15,9 @@
 //! as much as validating the result. The same plan is also written as source, the authors' own text with their comments, and
 //! the two forms are held against each other: the source form, parsed again, has the hash of the IR.
 //!
+//! A [`space`] is a recipe with alternatives: its legal permutations are counted, walked through, covered or sampled without building
+//! those that a rule forbids, and compiled on many threads.
+//!
 //! The compiler reaches the outside world through [`Library`] alone, knows no category or module by name, and answers any input
 //! with a program or with a [`Report`] whose errors point into the author's file.
 //!

@@ -319,6 +319,34 @@ error[SW1004]: the space has too many alternatives
     );
 }
 
+/// The same for a cover.
+#[test]
+fn sw1004_too_many_options() {
+    let values = |from: u32| format!("(from: {from}.0, to: 10.0, steps: 1000)");
+    let of: Vec<String> = (0..9)
+        .map(|k| format!("(module: \"scaled\", freeze: {{\"by\": {}}})", values(k)))
+        .collect();
+    let text = format!(
+        "(\n    module: \"run\",\n    fill: {{\"value\": (one_of: [{}])}},\n)\n",
+        of.join(", ")
+    );
+    let space = Space::parse(&library().catalog().unwrap(), "a.space.ron", &text).unwrap();
+    assert_eq!(space.count().unwrap(), 9009);
+    assert_text(
+        &space.pairwise().unwrap_err().render(),
+        r#"
+error[SW1004]: the space has too many alternatives to cover pairwise
+  --> a.space.ron:2:13
+  |
+2 |     module: "run",
+  |             ^^^^^ of this
+  |
+  = it has 9018 options, at most 8192 are taken
+  = take a random sample, or leave alternatives out
+"#,
+    );
+}
+
 #[test]
 fn sw1005_space_too_tangled() {
     // Each of 24 modules demands or is another's ruin: nearly every subset must be told apart.
@@ -365,9 +393,13 @@ error[SW1006]: the space has 340282366920938463463374607431768211455 permutation
     );
     // It can be covered all the same: all there, all absent, and few more.
     let space = Space::parse(&library().catalog().unwrap(), "a.space.ron", &text).unwrap_or_else(|report| panic!("{report}"));
-    assert!((2..40).contains(&space.pairwise().len()), "{}", space.pairwise().len());
+    assert!(
+        (2..40).contains(&space.pairwise().unwrap().len()),
+        "{}",
+        space.pairwise().unwrap().len()
+    );
     assert!(space.get(0).is_none() && space.random(1, 0).is_err() && space.iter().is_err());
-    assert!(space.pairwise().iter().all(|p| p.index.is_none()));
+    assert!(space.pairwise().unwrap().iter().all(|p| p.index.is_none()));
 }
 
 #[test]

@@ -189,9 +189,9 @@ pub fn unknown_slots<'a>(module: &Module, names: impl IntoIterator<Item = &'a St
 }
 
 /// The error about a module whose default leads back to it, if it does. `defaults` are the modules whose defaults are being expanded.
-pub fn circle(defaults: &[Arc<Module>], module: &Arc<Module>, at: &Place) -> Option<Report> {
+pub fn circle(defaults: &[Arc<Module>], module: &Module, at: &Place) -> Option<Report> {
     let first = defaults.iter().position(|m| m.name == module.name)?;
-    let circle = defaults[first..].iter().chain([module]);
+    let circle = defaults[first..].iter().map(AsRef::as_ref).chain([module]);
     let circle: Vec<&str> = circle.map(|m| m.name.as_str()).collect();
     Some(
         Diagnostic::new(codes::CYCLIC_TREE, format!("the defaults of `{}` lead back to itself", module.name))

@@ -177,7 +177,7 @@ fn may_be_there(expr: &Expr, index: usize, fixed: &Fixed) -> bool {
 }
 
 /// Whether it matters how many of its elements are there.
-fn bounded(expr: &Expr) -> bool {
+pub fn bounded(expr: &Expr) -> bool {
     matches!(expr, Expr::SomeOf { range, of, .. } if range.0 > 0 || (range.1 as usize) < of.len())
 }
 

@@ -56,6 +56,8 @@ pub struct Space {
     /// `None` where it is more than can be numbered.
     count: Option<u128>,
     possible: Vec<bool>,
+    /// Whether no choice bears on another but by being inside it.
+    independent: bool,
     /// Of a space without permutations, what of its own text alone is the reason.
     blame: Vec<String>,
 }
@@ -105,6 +107,7 @@ impl Space {
         let legal: Vec<(SigId, u128)> = ends.into_iter().filter(|&(s, _)| signatures.complete(s)).collect();
         let sum = legal.iter().fold(0u128, |sum, &(_, count)| sum.saturating_add(count));
         let possible = count::possible(&tree, &signatures, &ways, &free);
+        let independent = signatures.only_nothing() && !tree.exprs.iter().any(count::bounded);
         Ok(Self {
             source: Arc::clone(&file.source),
             place,
@@ -115,6 +118,7 @@ impl Space {
             legal,
             count: (sum < u128::MAX).then_some(sum),
             possible,
+            independent,
             blame: Vec::new(),
         })
     }
@@ -205,9 +209,21 @@ impl Space {
 
     /// Permutations in which any two options that can stand together in a legal permutation do so at least once. Greedy, so not the
     /// fewest; always the same.
-    pub fn pairwise(&self) -> Vec<Permutation> {
+    ///
+    /// # Errors
+    /// There are more than [`MOST_OPTIONS`] options.
+    pub fn pairwise(&self) -> Result<Vec<Permutation>, Report> {
+        if self.tree.values > MOST_OPTIONS {
+            return Err(
+                Diagnostic::new(codes::SPACE_TOO_LARGE, "the space has too many alternatives to cover pairwise")
+                    .at(&self.place.file, self.place.name_span(), "of this")
+                    .note(format!("it has {} options, at most {MOST_OPTIONS} are taken", self.tree.values))
+                    .note("take a random sample, or leave alternatives out")
+                    .into(),
+            );
+        }
         let cover = pairwise::cover(self).into_iter();
-        cover.map(|picks| self.permutation(self.index_of(&picks), &picks)).collect()
+        Ok(cover.map(|picks| self.permutation(self.index_of(&picks), &picks)).collect())
     }
 
     /// Numbers of so many different permutations, ascending, each set of them as probable as any other. All where there are no more.
@@ -268,11 +284,28 @@ impl Space {
 
     /// Which options are possible beside what is fixed.
     fn possible_with(&self, fixed: &Fixed) -> Vec<bool> {
+        if self.independent {
+            return self.possible_alone(fixed);
+        }
         match count::ways(&self.tree, &mut Met(&self.signatures), fixed) {
             Some(ways) => count::possible(&self.tree, &self.signatures, &ways, fixed),
             // Never more sums than without anything fixed.
             None => vec![false; self.tree.values],
         }
+    }
+
+    /// The same where no choice bears on another but by being inside it: an option is possible unless what it is inside of was decided otherwise.
+    fn possible_alone(&self, fixed: &Fixed) -> Vec<bool> {
+        let mut found = self.possible.clone();
+        for (point, only) in self.tree.points.iter().zip(fixed) {
+            let inside = point
+                .parent
+                .is_none_or(|(parent, option)| found[self.tree.points[parent].first_value + option as usize]);
+            for option in 0..point.options.len() {
+                found[point.first_value + option] &= inside && only.is_none_or(|only| only as usize == option);
+            }
+        }
+        found
     }
 }
 
@@ -297,6 +330,9 @@ fn blame(catalog: &Catalog, file: &SpaceFile) -> Vec<String> {
     }
     found
 }
+
+/// Most options that [`Space::pairwise`] takes ([`codes::SPACE_TOO_LARGE`]).
+pub const MOST_OPTIONS: usize = 1 << 13;
 
 fn tangled(place: &Place) -> Report {
     Diagnostic::new(codes::SPACE_TOO_TANGLED, "the rules tie together too much of the space")

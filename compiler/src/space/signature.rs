@@ -90,6 +90,11 @@ impl Signatures {
         &self.list[id as usize]
     }
 
+    /// Whether nothing could be told apart from nothing.
+    pub fn only_nothing(&self) -> bool {
+        self.list.len() == 1
+    }
+
     /// The number of a signature.
     pub fn number(&mut self, signature: Signature) -> SigId {
         if let Some(&id) = self.known.get(&signature) {

@@ -85,8 +85,8 @@ fn numbers(name: &str, range: &ValueRange, place: &Place) -> Result<Vec<f64>, Re
     }
     let value = |k: u32| match (f64::from(k) / steps, scale) {
         // The ends are as they are written, whatever rounding makes of the rest.
-        (share, _) if share == 0.0 => from,
-        (share, _) if share == 1.0 => to,
+        (0.0, _) => from,
+        (1.0, _) => to,
         (share, Scale::Linear) => from + (to - from) * share,
         (share, Scale::Log) => from * (to / from).powf(share),
     };

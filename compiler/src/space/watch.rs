@@ -170,16 +170,29 @@ fn label_of(module: &ModuleExpr) -> Option<Label> {
 
 /// Labels that may stand more than once in a tree, and so must name equal subtrees.
 fn contested(tree: &Tree) -> Vec<Label> {
-    let mut labels: BTreeMap<Label, ()> = BTreeMap::new();
+    let mut labels: BTreeMap<Label, u32> = BTreeMap::new();
     for expr in &tree.exprs {
-        if let Expr::Module(module) = expr {
-            labels.extend(label_of(module).map(|label| (label, ())));
+        if let Expr::Module(module) = expr
+            && let Some(label) = label_of(module)
+        {
+            *labels.entry(label).or_default() += 1;
         }
     }
-    let all = labels.into_keys();
-    all.filter(|label| largest(tree, |module| u32::from(label_of(module).as_ref() == Some(label))) > 1)
-        .collect()
+    let several: Vec<Label> = labels
+        .into_iter()
+        .filter(|&(_, number)| number > 1)
+        .map(|(label, _)| label)
+        .collect();
+    // Alternatives with one label stand in no tree together. With very many labels that is not looked into: more is told apart than need be.
+    if several.len().saturating_mul(tree.exprs.len()) > MOST_LOOKS {
+        return several;
+    }
+    let twice = |label: &Label| largest(tree, |module| u32::from(label_of(module).as_ref() == Some(label))) > 1;
+    several.into_iter().filter(twice).collect()
 }
+
+/// Most expressions that are looked at for labels.
+const MOST_LOOKS: usize = 1 << 22;
 
 /// Below a contested label every difference matters.
 fn make_exact(tree: &mut Tree) {

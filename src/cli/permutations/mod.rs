@@ -103,7 +103,7 @@ fn sampled<'s>(space: &'s Space, options: &Options) -> Result<Drawn<'s>, Failure
             iter: Box::new(space.iter()?),
         },
         Sample::Pairwise => {
-            let cover = space.pairwise();
+            let cover = space.pairwise()?;
             Drawn {
                 number: cover.len() as u128,
                 iter: Box::new(cover.into_iter()),
@@ -327,8 +327,8 @@ pub fn check_space(context: &Context, path: &Path) -> Result<(), Failure> {
     let space = Space::parse(&context.catalog, &path.to_string_lossy(), &input::text(path)?)?;
     space.not_empty()?;
     // What `check` asks of a recipe it asks of each: every pass of a root, every function of another module.
-    space
-        .pairwise()
+    let cover = space.pairwise()?;
+    cover
         .iter()
         .try_for_each(|permutation| super::check::tree(context, &permutation.recipe))
 }

@@ -74,8 +74,11 @@ struct Written {
 /// What a thread made of a pass: its hash and, unless it is known to be there, its files.
 struct Made {
     pass: String,
-    result: Result<(String, Vec<(String, Vec<u8>)>), Report>,
+    result: Result<(String, Files), Report>,
 }
+
+/// Names and bytes of a program's files.
+type Files = Vec<(String, Vec<u8>)>;
 
 /// # Errors
 /// The folder cannot be written to or holds another manifest, or permutations do not compile.
@@ -332,7 +335,7 @@ impl Writer<'_> {
 }
 
 /// The files of a program, named by its hash.
-fn files(program: &Program, language: Language) -> Result<Vec<(String, Vec<u8>)>, Report> {
+fn files(program: &Program, language: Language) -> Result<Files, Report> {
     let hash = &program.reflection().hash;
     let ending = match language {
         Language::Wgsl | Language::WgslIr => "wgsl",
