@@ -55,9 +55,8 @@ impl Program {
 
     /// Whether a catalog would compile the recipe to this program again: no edit between the catalogs touches what it is made of.
     pub fn is_current(&self, catalog: &Catalog) -> bool {
-        let modules = self.plan.tree.nodes.iter().all(|node| catalog.has_module(&node.module));
-        let interfaces = self.plan.homes.iter().filter(|home| home.instance.is_none());
-        modules && interfaces.into_iter().all(|home| catalog.has_interface(&home.unit))
+        // A module whose interfaces are edited is not kept either.
+        self.plan.tree.nodes.iter().all(|node| catalog.has_module(&node.module))
     }
 
     /// The tree of the recipe as it was resolved, defaults included: a line a module with its slot path.

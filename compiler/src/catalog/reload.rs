@@ -6,7 +6,6 @@ use super::load::{Declared, declared, read};
 use super::{Catalog, Module, lock};
 use crate::contracts;
 use crate::diagnostics::Report;
-use crate::parse::Unit;
 
 impl Catalog {
     /// Reads the library again. Modules that no edit touches are kept with their parsed text: an edit of one module's file parses
@@ -44,12 +43,6 @@ impl Catalog {
     /// How many texts of modules this catalog has parsed: what [`Catalog::reload`] saves can be counted.
     pub fn parsed(&self) -> usize {
         self.parsed.load(std::sync::atomic::Ordering::Relaxed)
-    }
-
-    /// Whether a parsed interface is this catalog's.
-    pub(crate) fn has_interface(&self, unit: &Arc<Unit>) -> bool {
-        let name = unit.interface.as_deref().unwrap_or_default();
-        lock(&self.interface_units).get(name).is_some_and(|own| Arc::ptr_eq(own, unit))
     }
 
     /// Whether a module is this catalog's.
