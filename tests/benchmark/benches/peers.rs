@@ -4,7 +4,9 @@
 use std::cell::RefCell;
 use std::fmt::Write as _;
 use std::process::ExitCode;
+use std::sync::Arc;
 
+use shadewright_benchmark::edited::Edited;
 use shadewright_benchmark::measure::{Candidate, Times, rounds};
 use shadewright_benchmark::peers::{concatenation::concatenate, oil, parse, parse_and_validate, validate, wesl};
 use shadewright_benchmark::pieces::{Piece, pieces};
@@ -44,10 +46,11 @@ const PEERS: [&str; 13] = [
     WESL_NAGA,
 ];
 
+const EDIT: &str = "after an edit of one leaf: reload, parse it, link, validate";
 const REFLECTION: &str = "reflection of a program";
 const FINISH: &str = "finish a plan: IR, validation";
 
-const STEPS: [&str; 17] = [
+const STEPS: [&str; 18] = [
     "load the library's manifests",
     "plan: resolve, reach, find what is alive, bind, name",
     "write the plan as IR",
@@ -63,6 +66,7 @@ const STEPS: [&str; 17] = [
     "naga writes HLSL",
     "naga writes MSL",
     "naga parses the emitted text",
+    EDIT,
     COLD,
     REFLECTION,
 ];
@@ -160,6 +164,9 @@ fn measured(subject: &Subject, pieces: &[Piece], count: usize) -> Result<Vec<Tim
     let wesl_text = lean_wesl.text()?;
     let plan = said(catalog.plan(recipe, "main"))?;
     let linked = said(plan.link())?;
+    let library = Arc::new(Edited::new("ndf/ggx/ggx.wgsl"));
+    let open = RefCell::new(said(Catalog::load(library.clone()))?);
+    said(open.borrow().compile(recipe, "main"))?;
     let both = |module: Result<Module, String>| {
         let module = module?;
         let info = validate(&module)?;
@@ -214,6 +221,16 @@ fn measured(subject: &Subject, pieces: &[Piece], count: usize) -> Result<Vec<Tim
             |plan| said(plan.and_then(|plan| catalog.finish(plan))),
         ),
         Candidate::new(STEPS[7], || said(plan.source())),
+        Candidate::new(EDIT, || {
+            library.edit();
+            let catalog = said(open.borrow().reload())?;
+            let program = said(catalog.compile(recipe, "main"))?;
+            // Of all modules one is parsed again: else this measures something else.
+            if catalog.parsed() != 1 {
+                return Err(format!("{} modules were parsed", catalog.parsed()));
+            }
+            Ok((open.replace(catalog), program))
+        }),
         Candidate::with_input(
             REFLECTION,
             || catalog.compile(recipe, "main"),

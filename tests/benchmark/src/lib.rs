@@ -10,6 +10,7 @@
 //!
 //! `cargo bench -p shadewright-benchmark` measures and prints; `-- --write spec/performance.md` also puts the tables there.
 
+pub mod edited;
 pub mod measure;
 pub mod peers;
 pub mod permutations;
