@@ -134,7 +134,12 @@ fn permutations_compile_and_differ() {
     assert_eq!((many.len(), texts.len()), (10_000, 10_000));
     let text = |recipe: &Recipe| recipe.source.text.clone();
     let again = permutations::permutations(&catalog, 100).unwrap();
-    assert!(again.iter().map(text).eq(permutations::permutations(&catalog, 100).unwrap().iter().map(text)));
+    assert!(
+        again
+            .iter()
+            .map(text)
+            .eq(permutations::permutations(&catalog, 100).unwrap().iter().map(text))
+    );
     let mut hashes = std::collections::BTreeSet::new();
     for recipe in many.iter().step_by(170) {
         let program = catalog.compile(recipe, "main");
