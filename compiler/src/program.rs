@@ -122,8 +122,8 @@ impl From<Node> for Recipe {
 }
 
 impl Catalog {
-    /// Links, validates and reflects one pass of a recipe: `main` for the root's own entry points,
-    /// `<instance>.<pass>` for a pass that a module of the tree declares.
+    /// Links and validates one pass of a recipe: `main` for the root's own entry points, `<instance>.<pass>` for a pass that a module of the
+    /// tree declares. Reflection and source form are made when the program is first asked for them.
     ///
     /// # Errors
     /// Anything wrong with the recipe or with the modules it reaches.
@@ -177,7 +177,10 @@ impl Catalog {
                 let node = &tree.nodes[instances.list[instance].node];
                 let mut root = root.clone();
                 for slot in inherit {
-                    if let Some(filling) = recipe.root.fill.get(slot) {
+                    // What stands there, whether the recipe says so or the root's manifest.
+                    let declared = tree.nodes[0].module.manifest.slots.get(slot);
+                    let filling = recipe.root.fill.get(slot).or_else(|| declared?.default.as_ref());
+                    if let Some(filling) = filling {
                         root.fill.insert(slot.clone(), filling.clone());
                     }
                 }
@@ -208,7 +211,8 @@ impl Catalog {
         })
     }
 
-    /// The second half of [`Catalog::compile`]: links and validates.
+    /// The second half of [`Catalog::compile`]: writes the plan as IR, hashes and validates it. Nothing is reflected yet; the source form is
+    /// written here only for plans with deeply nested functions, which want a large stack.
     ///
     /// # Errors
     /// The linked module does not pass naga's validator.
