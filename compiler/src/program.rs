@@ -123,7 +123,7 @@ impl From<Node> for Recipe {
 
 impl Catalog {
     /// Links and validates one pass of a recipe: `main` for the root's own entry points, `<instance>.<pass>` for a pass that a module of the
-    /// tree declares. Reflection and source form are made when the program is first asked for them.
+    /// tree declares. Hash, reflection and source form are made when the program is first asked for them.
     ///
     /// # Errors
     /// Anything wrong with the recipe or with the modules it reaches.
@@ -211,8 +211,8 @@ impl Catalog {
         })
     }
 
-    /// The second half of [`Catalog::compile`]: writes the plan as IR, hashes and validates it. Nothing is reflected yet; the source form is
-    /// written here only for plans with deeply nested functions, which want a large stack.
+    /// The second half of [`Catalog::compile`]: writes the plan as IR and validates it. Nothing is reflected yet; hash and source form are
+    /// made here only for plans with deeply nested functions, which want a large stack.
     ///
     /// # Errors
     /// The linked module does not pass naga's validator.

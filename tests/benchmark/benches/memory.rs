@@ -54,9 +54,7 @@ fn run() -> Result<(), String> {
     let mut composer = sources.composer(true)?;
     let wesl = wesl::Compiler::new(&pieces, false)?;
     let rows = vec![
-        counted("ours: program (IR, its validation, plan)", || {
-            said(catalog.compile(recipe, "main"))
-        })?,
+        counted("ours: program (IR, its validation, plan)", || said(catalog.compile(recipe, "main")))?,
         counted("ours: plan", || said(catalog.plan(recipe, "main")))?,
         counted("ours: IR written from a plan", || said(plan.link()))?,
         counted("ours: validated IR, plan thrown away", || {
