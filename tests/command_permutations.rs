@@ -267,6 +267,53 @@ fn emit_goes_on_where_it_was() {
     );
 }
 
+/// Catches an edit after which everything is compiled again, one that goes unnoticed, and a text of another permutation than the first.
+#[test]
+fn emit_keeps_what_an_edit_does_not_reach() {
+    let base = tempfile::tempdir().unwrap();
+    let modules = base.path().join("modules");
+    let write = |name: &str, body: &str| {
+        let module = modules.join("brdf").join(name);
+        std::fs::create_dir_all(&module).unwrap();
+        std::fs::write(module.join("module.ron"), "(summary: \"Planted\")").unwrap();
+        let wgsl = format!("fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {{\n    {body}\n}}\n");
+        std::fs::write(module.join(format!("{name}.wgsl")), wgsl).unwrap();
+    };
+    let folder = base.path().join("folder");
+    let mut runs = 0;
+    let mut kept = |names: [&str; 3]| {
+        let space = format!(r#"(module: "forward", fill: {{"brdf": (one_of: {names:?}), "lights": ["point"]}})"#);
+        let more = ["--modules", modules.to_str().unwrap(), "--format", "json"];
+        let json = emit(&folder, &space, &more).json();
+        runs += 1;
+        let whole = base.path().join(format!("whole {runs}"));
+        assert_eq!(emit(&whole, &space, &more).status, 0);
+        let mut now = contents(&folder);
+        // What nothing names any more is left where it is.
+        let expected = contents(&whole);
+        now.retain(|name, _| expected.contains_key(name));
+        assert_eq!(now, expected, "run {runs}");
+        json["kept"].as_u64().unwrap()
+    };
+    write("one", "return s.diffuse;");
+    write("two", "return s.diffuse * 2.0;");
+    assert_eq!(kept(["one", "two", "lambert"]), 0);
+    assert_eq!(kept(["one", "two", "lambert"]), 3);
+    write("two", "return s.diffuse * 3.0;");
+    assert_eq!(kept(["one", "two", "lambert"]), 2);
+    // Another comment, the same program: the file has another text under the same name.
+    write("one", "return s.diffuse; // planted");
+    assert_eq!(kept(["one", "two", "lambert"]), 2);
+    // Two texts of one program: the first one's is in the file, whichever that is now.
+    write("two", "return s.diffuse; // also planted");
+    assert_eq!(kept(["one", "two", "lambert"]), 2);
+    assert_eq!(kept(["two", "one", "lambert"]), 2);
+    write("two", "return s.diffuse; // edited");
+    assert_eq!(kept(["two", "one", "lambert"]), 1, "the text of the first was in the file of both");
+    write("two", "return s.diffuse * 2.0;");
+    assert_eq!(kept(["two", "one", "lambert"]), 1, "as before");
+}
+
 /// Catches Ctrl-C that leaves half a file, a temporary one, or a manifest that names what is not there.
 #[cfg(unix)]
 #[test]

@@ -121,8 +121,8 @@ impl From<Node> for Recipe {
 }
 
 impl Catalog {
-    /// Links, validates and reflects one pass of a recipe: `main` for the root's own entry points,
-    /// `<instance>.<pass>` for a pass that a module of the tree declares.
+    /// Links and validates one pass of a recipe: `main` for the root's own entry points, `<instance>.<pass>` for a pass that a module of the
+    /// tree declares. Hash, reflection and source form are made when the program is first asked for them.
     ///
     /// # Errors
     /// Anything wrong with the recipe or with the modules it reaches.
@@ -176,7 +176,10 @@ impl Catalog {
                 let node = &tree.nodes[instances.list[instance].node];
                 let mut root = root.clone();
                 for slot in inherit {
-                    if let Some(filling) = recipe.root.fill.get(slot) {
+                    // What stands there, whether the recipe says so or the root's manifest.
+                    let declared = tree.nodes[0].module.manifest.slots.get(slot);
+                    let filling = recipe.root.fill.get(slot).or_else(|| declared?.default.as_ref());
+                    if let Some(filling) = filling {
                         root.fill.insert(slot.clone(), filling.clone());
                     }
                 }
@@ -207,7 +210,8 @@ impl Catalog {
         })
     }
 
-    /// The second half of [`Catalog::compile`]: links and validates.
+    /// The second half of [`Catalog::compile`]: writes the plan as IR and validates it. Nothing is reflected yet; hash and source form are
+    /// made here only for plans with deeply nested functions, which want a large stack.
     ///
     /// # Errors
     /// The linked module does not pass naga's validator.

@@ -178,6 +178,38 @@ fn a_key_is_that_of_the_tree_and_the_pass() {
     );
 }
 
+/// Catches a pass that inherits what the recipe says and not what the root has by default: recipes of one tree, and so of one key, would have
+/// two shadows.
+#[test]
+fn a_pass_inherits_defaults_as_well() {
+    let mut texts = standard().module(
+        "geometry",
+        "raised",
+        "",
+        "fn deform(v: Vertex) -> Vertex {\n    var raised = v;\n    raised.position.y += 1.0;\n    return raised;\n}\n",
+    );
+    let forward = texts.0.get_mut("pass/forward/module.ron").unwrap();
+    *forward = forward.replace(r#"default: ["static"]"#, r#"default: ["raised"]"#);
+    let catalog = load(texts);
+    let of = |text: &str| {
+        let recipe = recipe(text);
+        let program = catalog
+            .compile(&recipe, "cube_map.shadow")
+            .unwrap_or_else(|report| panic!("{report}"));
+        (catalog.key(&recipe, "cube_map.shadow").unwrap(), program.hash())
+    };
+    let light = r#""lights": [(module: "point", fill: {"visibility": "cube-map"})]"#;
+    let plain = of(&format!(r#"(module: "forward", fill: {{{light}}})"#));
+    assert_eq!(
+        plain,
+        of(&format!(r#"(module: "forward", fill: {{"geometry": ["raised"], {light}}})"#))
+    );
+    assert_ne!(
+        plain.1,
+        of(&format!(r#"(module: "forward", fill: {{"geometry": ["static"], {light}}})"#)).1
+    );
+}
+
 /// Catches a key of something that stands for no tree.
 #[test]
 fn no_key_without_a_tree() {

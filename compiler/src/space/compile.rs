@@ -1,14 +1,11 @@
 //! Many permutations to programs, on several threads.
 
-use std::hash::Hasher;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use siphasher::sip128::{Hasher128, SipHasher13};
 
 use crate::catalog::Catalog;
-use crate::diagnostics::{Diagnostic, Report, codes};
-use crate::library::Library;
+use crate::diagnostics::{Report, codes};
 use crate::program::{Program, Recipe};
 
 use super::Permutation;
@@ -83,41 +80,4 @@ fn compile(catalog: &Catalog, recipe: &Recipe, passes: &Passes) -> Compiled {
             compiled
         }
     }
-}
-
-/// Hash of all texts of a library and of this compiler's version: while it is the same, so is what comes of a recipe.
-///
-/// # Errors
-/// A file cannot be read.
-pub fn fingerprint(library: &dyn Library) -> Result<u128, Report> {
-    let mut hasher = SipHasher13::new();
-    let mut write = |text: &str| {
-        hasher.write_u64(text.len() as u64);
-        hasher.write(text.as_bytes());
-    };
-    write(env!("CARGO_PKG_VERSION"));
-    for category in sorted(library.folders("")) {
-        let mut paths = vec![format!("{category}/category.ron"), format!("{category}/interface.wgsl")];
-        for module in sorted(library.folders(&category)) {
-            paths.extend([
-                format!("{category}/{module}/module.ron"),
-                format!("{category}/{module}/{module}.wgsl"),
-            ]);
-        }
-        for path in paths {
-            let text = library
-                .read(&path)
-                .map_err(|why| Report::from(Diagnostic::new(codes::UNREADABLE_FILE, format!("`{path}` cannot be read: {why}"))))?;
-            if let Some(text) = text {
-                write(&path);
-                write(&text);
-            }
-        }
-    }
-    Ok(hasher.finish128().as_u128())
-}
-
-fn sorted(mut names: Vec<String>) -> Vec<String> {
-    names.sort();
-    names
 }

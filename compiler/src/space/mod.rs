@@ -33,7 +33,7 @@ use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::resolve::{Place, Way};
 
-pub use compile::{Compiled, Passes, Work, compile_all, fingerprint};
+pub use compile::{Compiled, Passes, Work, compile_all};
 pub use format::{Choice, Fits, FitsChoice, Limits, Scale, SpaceFile, SpaceNode, SpaceRule, ValueRange, Values};
 pub use open::{MOST_EXPRESSIONS, OPEN_DEPTH};
 pub use permutation::{Chosen, Permutation};

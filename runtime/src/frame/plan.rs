@@ -9,7 +9,7 @@ use super::Frame;
 use super::fill::Look;
 use super::list::{Cut, List, world_bounds};
 use super::maps::{Map, maps_of, scene_bounds};
-use super::programs::Programs;
+use super::programs::{Programs, text_of};
 use super::view::Eye;
 use crate::gpu::{DataError, RuntimeError};
 
@@ -96,6 +96,12 @@ impl<'a> Plan<'a> {
         }
         plan.find_casters(programs, frame, cut)?;
         Ok(plan)
+    }
+
+    /// Whether this material, or the display pass after the last, is drawn with the recipe of this text.
+    pub fn has(&self, id: usize, recipe: &str) -> bool {
+        let look = self.forward.get(id).unwrap_or(&self.display);
+        look.as_ref().is_some_and(|look| text_of(&look.root) == recipe)
     }
 
     /// The programs that draw materials into maps.

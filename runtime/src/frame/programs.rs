@@ -45,6 +45,9 @@ impl Programs {
             return Ok(Arc::clone(made));
         }
         let program = Arc::new(self.catalog.compile(&Recipe::from(root.clone()), pass)?);
+        // Found out when first asked for: here, on all cores or in the background, and not while a frame is drawn.
+        program.hash();
+        program.reflection();
         Ok(Arc::clone(lock(&self.made).entry(key).or_insert(program)))
     }
 

@@ -131,7 +131,7 @@ impl Renderer {
 
     /// Format of the HDR frame.
     pub(super) fn hdr(&mut self, frame: &Frame) -> Result<wgpu::TextureFormat, RuntimeError> {
-        self.gpu.check()?;
+        self.gpu.ask()?;
         let gpu = &self.gpu;
         Ok(self.formats.get_or_insert_with(|| HdrFormats::of(gpu)).format(frame))
     }
@@ -174,6 +174,8 @@ impl Renderer {
         };
         passes(&mut drawing, &made)?;
         let commands = drawing.commands;
+        // Buffers of recipes that the frame has no more.
+        drawing.fill.kept.retain(|(recipe, id, ..), _| plan.has(*id, recipe));
         self.gpu.scoped("frame", |_| {
             self.gpu.queue().submit([commands.finish()]);
         })?;

@@ -247,6 +247,22 @@ fn a_preparation_does_not_count_as_a_frame() {
     assert_eq!(next(&mut renderer), 2);
 }
 
+/// Catches buffers that stay on the GPU when no frame has their recipe any more.
+#[test]
+fn buffers_go_with_their_recipe() {
+    let mut frame = frame(vec![]);
+    frame.display = Some(material("count"));
+    let mut renderer = renderer(&gpu());
+    let next = |renderer: &mut Renderer, frame: &Frame| renderer.render(frame).unwrap().read_display(&gpu()).unwrap().unwrap()[0];
+    assert_eq!((next(&mut renderer, &frame), next(&mut renderer, &frame)), (1, 2));
+    let without = Frame {
+        display: None,
+        ..frame.clone()
+    };
+    renderer.render(&without).unwrap();
+    assert_eq!(next(&mut renderer, &frame), 1);
+}
+
 /// Catches a fallback that is compiled while the special is, and takes its time.
 #[test]
 fn a_fallback_is_made_only_where_nothing_better_comes() {

@@ -141,6 +141,18 @@ impl Gpu {
         }
     }
 
+    /// As [`Gpu::check`], after asking the device: wgpu tells of a loss only when it is polled, and what a lost device makes until then looks
+    /// as if it were there. Does not wait.
+    ///
+    /// # Errors
+    /// As for [`Gpu::check`].
+    pub fn ask(&self) -> Result<(), GpuError> {
+        if self.device.poll(wgpu::PollType::Poll).is_err() {
+            log::debug!("the device could not be polled");
+        }
+        self.check()
+    }
+
     /// The loss that caused an error, if one did: wgpu calls whatever a lost device gives invalid, and tells of the loss itself
     /// only when it is polled.
     fn or_lost(&self, error: GpuError) -> GpuError {

@@ -1,6 +1,6 @@
 //! `permutations --emit`: a folder with each distinct program once, and a manifest that says which permutation has which.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::hash::Hasher;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
-use shadewright::compiler::space::{Chosen, Permutation, Space, Work, compile_all, fingerprint};
+use shadewright::compiler::space::{Chosen, Permutation, Space, Work, compile_all};
 use shadewright::compiler::{Program, Report};
 use siphasher::sip128::{Hasher128, SipHasher13};
 
@@ -34,8 +34,6 @@ struct Manifest {
     complete: bool,
     /// Hash of the space's text.
     space: String,
-    /// Hash of the library's texts and of the compiler's version.
-    library: String,
     target: String,
     pass: String,
     sample: String,
@@ -54,6 +52,8 @@ struct Entry {
     index: Option<String>,
     choices: Vec<Chosen>,
     recipe: String,
+    /// What its programs depend on: [`Catalog::key`](shadewright::compiler::Catalog::key). None where the recipe stands for no tree.
+    key: Option<String>,
     programs: Vec<Written>,
 }
 
@@ -88,7 +88,6 @@ pub fn emit(context: &Context, space: &Space, options: &Options, folder: &Path) 
         version: VERSION,
         complete: false,
         space: digest(space.source().text.as_bytes()),
-        library: format!("{:032x}", fingerprint(context.library.as_ref())?),
         target: options
             .target
             .to_possible_value()
@@ -162,11 +161,11 @@ impl Writer<'_> {
         chunk: &[Permutation],
         manifest: &mut Manifest,
     ) -> Result<bool, Failure> {
-        let fresh: Vec<Permutation> = chunk
-            .iter()
-            .filter(|p| !done.entries.contains_key(&p.recipe.source.text))
-            .cloned()
-            .collect();
+        let key = |p: &Permutation| context.catalog.key(&p.recipe, &options.pass).ok().map(|key| format!("{key:032x}"));
+        let keys: Vec<Option<String>> = chunk.iter().map(key).collect();
+        let earlier = done.that_hold(&keys, self.known.keys());
+        let missing = chunk.iter().zip(&earlier).filter(|(_, entry)| entry.is_none());
+        let fresh: Vec<Permutation> = missing.map(|(permutation, _)| permutation.clone()).collect();
         let work = Work {
             passes: options.passes(),
             threads: options.threads,
@@ -192,8 +191,8 @@ impl Writer<'_> {
         })
         .into_iter();
         let mut outputs = Outputs::default();
-        for permutation in chunk {
-            let programs = match done.entries.get(&permutation.recipe.source.text) {
+        for ((permutation, key), entry) in chunk.iter().zip(keys).zip(earlier) {
+            let programs = match entry {
                 Some(entry) => {
                     self.reused += 1;
                     watch.step();
@@ -212,6 +211,7 @@ impl Writer<'_> {
                 index: index(permutation),
                 choices: permutation.choices.clone(),
                 recipe: permutation.recipe.source.text.clone(),
+                key,
                 programs,
             });
         }
@@ -225,10 +225,13 @@ impl Writer<'_> {
 
     fn reuse(&mut self, entry: &Entry, files: &BTreeMap<String, String>, manifest: &mut Manifest) -> Vec<Written> {
         for program in &entry.programs {
-            if let Some(hash) = &program.hash {
-                self.count(hash);
-                self.known.entry(hash.clone()).or_insert_with(|| program.files.clone());
+            let Some(hash) = &program.hash else { continue };
+            self.count(hash);
+            // Files of a program that was met before are another permutation's, perhaps written anew.
+            if self.known.contains_key(hash) {
+                continue;
             }
+            self.known.insert(hash.clone(), program.files.clone());
             for name in &program.files {
                 if let Some(digest) = files.get(name) {
                     manifest.files.insert(name.clone(), digest.clone());
@@ -355,9 +358,30 @@ fn files(program: &Program, language: Language) -> Result<Files, Report> {
 /// What a run before this one left, as far as it still holds.
 #[derive(Default)]
 struct Earlier {
-    /// By recipe: permutations all of whose files are there and whole.
+    /// By key: permutations all of whose files are there and whole.
     entries: HashMap<String, Entry>,
+    /// By hash of a program: the key of the permutation whose text is in its files, the first that has it.
+    writers: HashMap<String, String>,
     files: BTreeMap<String, String>,
+}
+
+impl Earlier {
+    /// For the key of each permutation the entry that still says what comes of it. Of permutations with one program the first one's text is
+    /// written, so the first of those that there are now must be the one whose text is there, or it is compiled again.
+    fn that_hold<'a: 'k, 'k>(&'a self, keys: &[Option<String>], known: impl Iterator<Item = &'k String>) -> Vec<Option<&'a Entry>> {
+        let mut known: HashSet<&'k String> = known.collect();
+        let holds = |key: &Option<String>| {
+            let key = key.as_ref()?;
+            let entry = self.entries.get(key)?;
+            let hashes = || entry.programs.iter().filter_map(|program| program.hash.as_ref());
+            if !hashes().all(|hash| known.contains(hash) || self.writers.get(hash) == Some(key)) {
+                return None;
+            }
+            known.extend(hashes());
+            Some(entry)
+        };
+        keys.iter().map(holds).collect()
+    }
 }
 
 fn earlier(folder: &Path, now: &Manifest) -> Result<Earlier, Failure> {
@@ -377,8 +401,8 @@ fn earlier(folder: &Path, now: &Manifest) -> Result<Earlier, Failure> {
     if manifest.version != now.version {
         return Err(foreign(format!("version {}, not {VERSION}", manifest.version)));
     }
-    // Another library, target or pass makes other programs of the same recipe. Files of other programs have other names.
-    if (&manifest.library, &manifest.target, &manifest.pass) != (&now.library, &now.target, &now.pass) {
+    // Another target has other files, another pass other programs. Files of other programs have other names.
+    if (&manifest.target, &manifest.pass) != (&now.target, &now.pass) {
         return Ok(Earlier::default());
     }
     let whole: BTreeMap<String, String> = manifest
@@ -390,11 +414,18 @@ fn earlier(folder: &Path, now: &Manifest) -> Result<Earlier, Failure> {
         let mut programs = entry.programs.iter();
         programs.all(|p| p.hash.is_some() && p.files.iter().all(|name| whole.contains_key(name)))
     };
-    let entries = manifest.permutations.into_iter().filter(good);
-    Ok(Earlier {
-        entries: entries.map(|entry| (entry.recipe.clone(), entry)).collect(),
-        files: whole,
-    })
+    let mut done = Earlier::default();
+    for entry in manifest.permutations {
+        let Some(key) = &entry.key else { continue };
+        for hash in entry.programs.iter().filter_map(|program| program.hash.as_ref()) {
+            done.writers.entry(hash.clone()).or_insert_with(|| key.clone());
+        }
+        if good(&entry) {
+            done.entries.insert(key.clone(), entry);
+        }
+    }
+    done.files = whole;
+    Ok(done)
 }
 
 /// Hash of a file's bytes; `None` where it is not there.

@@ -102,10 +102,7 @@ fn measure(kept: &str, count: &str, threads: &str) -> Result<(), String> {
     let number = |text: &str| text.parse::<usize>().map_err(|_| format!("`{text}` is no number"));
     let said = |report: Report| report.render();
     let catalog = Catalog::load(shadewright_modules::library()).map_err(said)?;
-    let recipes: Vec<Recipe> = permutations(&catalog, "forward", number(count)?)?
-        .into_iter()
-        .map(Recipe::from)
-        .collect();
+    let recipes = permutations(&catalog, number(count)?)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(number(threads)?).build();
     let pool = pool.map_err(|error| error.to_string())?;
     let make = |recipe: &Recipe| match kept {

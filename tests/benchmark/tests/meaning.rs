@@ -124,18 +124,28 @@ fn the_pieces_are_the_whole_shader() {
     }
 }
 
-/// Catches permutations that do not compile (their time would be that of an error), are one and the same, or change from call to call.
+/// Catches permutations that do not compile (their time would be that of an error), are one and the same, or change from call to call, and a
+/// space that is too small for the longest row of the tables.
 #[test]
 fn permutations_compile_and_differ() {
     let catalog = Subject::load().unwrap().catalog;
-    let many = permutations::permutations(&catalog, "forward", 1000).unwrap();
-    let texts: std::collections::BTreeSet<String> = many.iter().map(|node| format!("{node:?}")).collect();
-    assert_eq!((many.len(), texts.len()), (1000, 1000));
-    assert_eq!(many[..100], permutations::permutations(&catalog, "forward", 100).unwrap());
+    let many = permutations::permutations(&catalog, 10_000).unwrap();
+    let texts: std::collections::BTreeSet<&str> = many.iter().map(|recipe| recipe.source.text.as_str()).collect();
+    assert_eq!((many.len(), texts.len()), (10_000, 10_000));
+    let text = |recipe: &Recipe| recipe.source.text.clone();
+    let again = permutations::permutations(&catalog, 100).unwrap();
+    assert!(
+        again
+            .iter()
+            .map(text)
+            .eq(permutations::permutations(&catalog, 100).unwrap().iter().map(text))
+    );
     let mut hashes = std::collections::BTreeSet::new();
-    for node in &many[..60] {
-        let program = catalog.compile(&Recipe::from(node.clone()), "main");
-        hashes.insert(program.unwrap_or_else(|report| panic!("{node:?}: {report}")).hash());
+    for recipe in many.iter().step_by(170) {
+        let program = catalog.compile(recipe, "main");
+        hashes.insert(program.unwrap_or_else(|report| panic!("{}: {report}", recipe.source.text)).hash());
     }
-    assert!(hashes.len() > 50, "only {} of 60 differ", hashes.len());
+    assert!(hashes.len() > 50, "only {} of 59 differ", hashes.len());
+    let error = permutations::permutations(&catalog, usize::MAX).unwrap_err();
+    assert!(error.starts_with("growth.space.ron has "), "{error}");
 }
