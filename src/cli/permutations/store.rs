@@ -388,13 +388,21 @@ fn earlier(folder: &Path, now: &Manifest) -> Result<Earlier, Failure> {
         .collect();
     let good = |entry: &Entry| {
         let mut programs = entry.programs.iter();
-        programs.all(|p| p.hash.is_some() && p.files.iter().all(|name| whole.contains_key(name)))
+        !entry.programs.is_empty() && programs.all(|p| is_whole(p, &whole))
     };
     let entries = manifest.permutations.into_iter().filter(good);
     Ok(Earlier {
         entries: entries.map(|entry| (entry.recipe.clone(), entry)).collect(),
         files: whole,
     })
+}
+
+/// Whether a program has a hash as ours are, and files of that name which are all there: somebody may have edited the manifest.
+fn is_whole(program: &Written, whole: &BTreeMap<String, String>) -> bool {
+    let Some(hash) = &program.hash else { return false };
+    let is_hash = hash.len() == 32 && hash.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
+    let its_own = |name: &String| whole.contains_key(name) && name.strip_prefix(hash.as_str()).is_some_and(|rest| rest.starts_with('.'));
+    is_hash && !program.files.is_empty() && program.files.iter().all(its_own)
 }
 
 /// Hash of a file's bytes; `None` where it is not there.
