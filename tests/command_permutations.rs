@@ -78,6 +78,12 @@ fn what_is_refused() {
     bad(&["permutations", SPACE, "--sample", "some"], 2, &["all, pairwise, or random:N"]);
     bad(&["permutations", SPACE, "--sample", "random:99999999999"], 2, &["up to 10000000"]);
     bad(&["permutations", SPACE, "--count", "--check"], 2, &["--check"]);
+    let none = ["none of the 8 permutations has a pass `typo`"];
+    bad(&["permutations", SPACE, "--check", "--pass", "typo"], 1, &none);
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path().to_str().unwrap();
+    bad(&["permutations", SPACE, "--emit", folder, "--pass", "typo"], 1, &none);
+    assert!(names(home.path()).is_empty());
     bad(
         &["permutations", "absent.space.ron"],
         1,

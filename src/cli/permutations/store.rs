@@ -126,6 +126,9 @@ pub fn emit(context: &Context, space: &Space, options: &Options, folder: &Path) 
         interrupted = !writer.chunk(context, options, &watch, &done, &chunk, &mut manifest)?;
     }
     watch.finish();
+    if !interrupted {
+        writer.tally.not_empty(&options.pass)?;
+    }
     manifest.complete = !interrupted;
     writer.note(&mut manifest, Outputs::default())?;
     if interrupted {
