@@ -21,7 +21,7 @@ use crate::parse::{Interface, Needs, SlotNeed, Unit, brackets, check_interface, 
 use crate::resolve::Place;
 use load::{Declared, declared, read};
 
-pub(crate) use variants::Variants;
+pub(crate) use variants::{Constants, Variants};
 
 /// A category with its name.
 #[derive(Debug)]

@@ -20,7 +20,7 @@ pub use crate::why::Why;
 pub struct Program {
     validated: Validated,
     reflection: OnceLock<Reflection>,
-    hash: u128,
+    hash: OnceLock<u128>,
     plan: Plan,
     pass: String,
     wgsl: OnceLock<String>,
@@ -35,12 +35,12 @@ impl Program {
     /// What a host must know to run it. Found out when first asked for.
     pub fn reflection(&self) -> &Reflection {
         self.reflection
-            .get_or_init(|| reflect(&self.plan, &self.validated, self.hash, &self.pass))
+            .get_or_init(|| reflect(&self.plan, &self.validated, self.hash(), &self.pass))
     }
 
-    /// Hash of the canonical IR: equal for programs that mean the same up to names.
+    /// Hash of the canonical IR: equal for programs that mean the same up to names. Found out when first asked for.
     pub fn hash(&self) -> u128 {
-        self.hash
+        *self.hash.get_or_init(|| structural_hash(self.validated.module()))
     }
 
     /// The source form: the authors' own text, linked. Written when first asked for.
@@ -216,17 +216,16 @@ impl Catalog {
         let LinkPlan { plan, pass } = plan;
         roomy(plan.deep, move || {
             let module = link(&plan);
-            let hash = structural_hash(&module);
             let validated = match validate(module) {
                 Ok(validated) => validated,
                 // The module is gone with the error: writing it again is for failures only.
                 Err(error) => return Err(located(&plan, &link(&plan), &error)),
             };
-            // While there is room for it.
-            let wgsl = if plan.deep {
-                OnceLock::from(write_source(&plan))
+            let (hash, wgsl) = if plan.deep {
+                // While there is room for it.
+                (structural_hash(validated.module()).into(), write_source(&plan).into())
             } else {
-                OnceLock::new()
+                (OnceLock::new(), OnceLock::new())
             };
             Ok(Program {
                 validated,

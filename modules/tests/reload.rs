@@ -82,6 +82,23 @@ fn all_variants_of_an_edited_module_go() {
     }
 }
 
+/// Catches a module that is kept although its declaration has changed.
+#[test]
+fn an_edited_declaration_is_seen() {
+    let library = Arc::new(Edited::default());
+    let catalog = Catalog::load(library.clone()).unwrap();
+    let recipe = Recipe::parse("r", "manual").unwrap();
+    let before = catalog.compile_probe(&recipe, "exposure").unwrap();
+    library.edit("exposure/manual/module.ron", "default: 12.0", "default: 13.0");
+    let edited = catalog.reload().unwrap();
+    assert!(!before.is_current(&edited));
+    let default = |catalog: &Catalog| {
+        let program = catalog.compile_probe(&recipe, "exposure").unwrap();
+        serde_json::to_string(&program.reflection().params[0].declared.default).unwrap()
+    };
+    assert_eq!((default(&catalog).as_str(), default(&edited).as_str()), ("12.0", "13.0"));
+}
+
 /// Catches modules that are kept although the interface that they were checked against has changed.
 #[test]
 fn an_edited_interface_touches_its_users_only() {

@@ -12,7 +12,7 @@ use crate::manifest::{Typed, Value};
 use crate::parse::Unit;
 
 /// Constants with their values, as text.
-type Constants = Vec<(String, String)>;
+pub type Constants = Vec<(String, String)>;
 
 /// Parsed units by constants. The oldest go when there are too many.
 #[derive(Debug, Default)]

@@ -5,14 +5,15 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use naga::Handle;
+use rayon::prelude::*;
 
 use super::{Body, Calls, Home, Names, Plan, Planned, Structs, bindings, live, names};
-use crate::catalog::{Catalog, Variants};
+use crate::catalog::{Catalog, Constants, Variants};
 use crate::contracts::compute_entry;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::{Combine, PassDecl};
 use crate::parse::{Origin, Unit};
-use crate::resolve::{Instance, Instances, Place, Tree};
+use crate::resolve::{Instance, Instances, Place, Tree, TreeNode};
 use crate::upstream::guarded;
 
 /// Which entry points a plan starts from.
@@ -125,6 +126,7 @@ struct Reach<'c> {
 
 impl Reach<'_> {
     fn instance_homes(&mut self) -> Result<(), Report> {
+        self.parse_ahead();
         for index in 0..self.instances.list.len() {
             let instance = &self.instances.list[index];
             let node = &self.tree.nodes[instance.node];
@@ -161,6 +163,25 @@ impl Reach<'_> {
             self.interfaces.insert(name, home);
         }
         Ok(())
+    }
+
+    /// Parses what is not parsed yet on all cores. What is wrong is found again, and told, by who asks for it in order.
+    fn parse_ahead(&self) {
+        let mut missing: Vec<(&TreeNode, Constants)> = Vec::new();
+        for instance in &self.instances.list {
+            let node = &self.tree.nodes[instance.node];
+            let key = Variants::key(&node.constants);
+            let is_known = missing
+                .iter()
+                .any(|(other, k)| Arc::ptr_eq(&other.module, &node.module) && *k == key);
+            if !is_known && node.module.variants.get(&key).is_none() {
+                missing.push((node, key));
+            }
+        }
+        if missing.len() > 1 {
+            let parse = |(node, _): &(&TreeNode, Constants)| drop(self.catalog.unit(&node.module, &node.constants));
+            missing.par_iter().for_each(parse);
+        }
     }
 
     fn push_home(&mut self, unit: Arc<Unit>, instance: Option<usize>, prefix: String) -> usize {

@@ -16,7 +16,7 @@ const REPEATS: usize = 3;
 
 /// What stays of every permutation.
 const KEPT: [(&str, &str); 3] = [
-    ("program", "program: IR, its validation, reflection, plan"),
+    ("program", "program: IR, its validation, plan"),
     ("module", "validated IR alone"),
     ("text", "WGSL text alone"),
 ];

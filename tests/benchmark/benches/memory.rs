@@ -54,7 +54,7 @@ fn run() -> Result<(), String> {
     let mut composer = sources.composer(true)?;
     let wesl = wesl::Compiler::new(&pieces, false)?;
     let rows = vec![
-        counted("ours: program (IR, its validation, reflection, plan)", || {
+        counted("ours: program (IR, its validation, plan)", || {
             said(catalog.compile(recipe, "main"))
         })?,
         counted("ours: plan", || said(catalog.plan(recipe, "main")))?,

@@ -14,9 +14,9 @@ use shadewright_compiler::canonical::canonical_hash;
 use shadewright_compiler::naga::{Module, compact};
 use shadewright_compiler::{Catalog, Recipe, Report, Target, emit, hash, validate as gate};
 
-const WARM: &str = "ours, modules parsed: linked, validated, reflected";
+const WARM: &str = "ours, modules parsed: linked and validated";
 const WARM_TEXT: &str = "ours, modules parsed: WGSL text alone";
-const COLD: &str = "ours from nothing: manifests, parse what is reached, link, validate, reflect";
+const COLD: &str = "ours from nothing: manifests, parse what is reached, link, validate";
 const COLD_TEXT: &str = "ours from nothing: WGSL text alone";
 const VALIDATION: &str = "naga's validation alone";
 const CONCATENATION: &str = "concatenation: naga parses and validates";
@@ -44,9 +44,10 @@ const PEERS: [&str; 13] = [
     WESL_NAGA,
 ];
 
-const FINISH: &str = "finish a plan: IR, canonical hash, validation, reflection";
+const REFLECTION: &str = "reflection of a program";
+const FINISH: &str = "finish a plan: IR, validation";
 
-const STEPS: [&str; 16] = [
+const STEPS: [&str; 17] = [
     "load the library's manifests",
     "plan: resolve, reach, find what is alive, bind, name",
     "write the plan as IR",
@@ -63,6 +64,7 @@ const STEPS: [&str; 16] = [
     "naga writes MSL",
     "naga parses the emitted text",
     COLD,
+    REFLECTION,
 ];
 
 /// Something that is asked for.
@@ -212,6 +214,15 @@ fn measured(subject: &Subject, pieces: &[Piece], count: usize) -> Result<Vec<Tim
             |plan| said(plan.and_then(|plan| catalog.finish(plan))),
         ),
         Candidate::new(STEPS[7], || said(plan.source())),
+        Candidate::with_input(
+            REFLECTION,
+            || catalog.compile(recipe, "main"),
+            |program| {
+                let program = said(program)?;
+                program.reflection();
+                Ok(program)
+            },
+        ),
         Candidate::new(STEPS[8], || serde_json::to_string(program.reflection()).map_err(|e| e.to_string())),
         Candidate::with_input(
             STEPS[9],
