@@ -78,6 +78,12 @@ fn what_is_refused() {
     bad(&["permutations", SPACE, "--sample", "some"], 2, &["all, pairwise, or random:N"]);
     bad(&["permutations", SPACE, "--sample", "random:99999999999"], 2, &["up to 10000000"]);
     bad(&["permutations", SPACE, "--count", "--check"], 2, &["--check"]);
+    let none = ["none of the 8 permutations has a pass `typo`"];
+    bad(&["permutations", SPACE, "--check", "--pass", "typo"], 1, &none);
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path().to_str().unwrap();
+    bad(&["permutations", SPACE, "--emit", folder, "--pass", "typo"], 1, &none);
+    assert!(names(home.path()).is_empty());
     bad(
         &["permutations", "absent.space.ron"],
         1,
@@ -375,4 +381,26 @@ fn ctrl_c_leaves_order() {
 fn no_progress_in_logs() {
     let ran = finish(shadewright().args(["permutations", SPACE, "--check"]));
     assert_eq!((ran.status, ran.err.as_str()), (0, ""));
+}
+
+/// Catches a manifest that somebody edited and that is believed: permutations without programs or files, or a hash that is none.
+#[test]
+fn an_edited_manifest_is_not_believed() {
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path().join("out");
+    emit(&folder, SPACE, &[]);
+    let whole = contents(&folder);
+    let edits: [(&str, &dyn Fn(&mut Value)); 4] = [
+        ("no programs", &|entry| entry["programs"] = Value::Array(Vec::new())),
+        ("no files", &|entry| entry["programs"][0]["files"] = Value::Array(Vec::new())),
+        ("no hash", &|entry| entry["programs"][0]["hash"] = "zzz".into()),
+        ("another's hash", &|entry| entry["programs"][0]["hash"] = "0".repeat(32).into()),
+    ];
+    for (what, edit) in edits {
+        let mut manifest = read(&folder.join("manifest.json"));
+        manifest["permutations"].as_array_mut().unwrap().iter_mut().for_each(edit);
+        std::fs::write(folder.join("manifest.json"), manifest.to_string()).unwrap();
+        emit(&folder, SPACE, &[]);
+        assert!(contents(&folder) == whole, "{what}");
+    }
 }

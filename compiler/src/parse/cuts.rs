@@ -8,7 +8,7 @@ use std::ops::Range;
 use naga::{Block, Expression, Function, Handle, Span, Statement};
 
 use super::branches::{Choice, choice, leaves, reachable};
-use super::lex::{Kind, Token};
+use super::lex::{Kind, Token, short_circuits};
 use super::lines::whole_lines;
 use super::scan::{Item, closing};
 use super::unit::Unit;
@@ -55,7 +55,7 @@ pub struct Constructor {
 /// The stretches of a function's text that may go.
 #[derive(Debug, Default)]
 pub struct Cuts {
-    /// Sides of branches that are never taken, with the words around them, and what stands behind a branch that always leaves.
+    /// Sides of branches that are never taken, with the words around them, and what stands behind a statement that always leaves.
     /// They always go.
     pub branches: Vec<Range<usize>>,
     /// Stores, in the order of the facts.
@@ -103,8 +103,8 @@ impl Finder<'_> {
             self.statement(statement, span);
             last = Some((statement, span));
         }
-        // What stands behind a branch that is always taken and leaves.
-        if let Some((statement @ Statement::If { .. }, span)) = last
+        // What stands behind a statement that leaves, such as a branch that is always taken.
+        if let Some((statement, span)) = last
             && count < block.len()
             && leaves(ir, self.function, statement)
         {
@@ -253,8 +253,11 @@ impl Finder<'_> {
 
     fn rest_of_block(&mut self, span: Span) -> Option<()> {
         let first = self.token_at(span)?;
-        let open = self.opening_brace(first)?;
-        let end = self.chain_end(closing(self.tokens, open)?)?;
+        let end = match self.word(first) {
+            "if" | "else" => self.chain_end(closing(self.tokens, self.opening_brace(first)?)?)?,
+            "{" => closing(self.tokens, first)?,
+            _ => (first..self.item.body.end).find(|&at| self.tokens[at].is(b';'))?,
+        };
         let mut depth = 0usize;
         for at in end + 1..self.item.body.end {
             match self.tokens[at].kind {
@@ -343,17 +346,16 @@ impl Finder<'_> {
         for &(first, end) in &found {
             let Some(cut) = self.whole_statement(first) else { continue };
             let phony = self.word(first) == "_";
-            let value = &self.text[self.tokens[first].end as usize..self.tokens[end].start as usize];
             let acting = |&t: &usize| {
                 let acts = ["atomic", "subgroup", "quad", "workgroupUniformLoad", "ray"];
-                self.is_call(t) && acts.iter().any(|p| self.word(t).starts_with(p))
+                self.is_call(t) && !self.unit.functions.contains_key(self.word(t)) && acts.iter().any(|p| self.word(t).starts_with(p))
             };
             let callees = (first..end).filter(|&t| self.is_call(t));
             let found_let = Let {
                 start: self.tokens[first].start as usize,
                 cut,
                 phony,
-                acts: value.contains("&&") || value.contains("||") || (first..end).any(|t| acting(&t)),
+                acts: short_circuits(&self.tokens[first..end]) || (first..end).any(|t| acting(&t)),
                 callees: callees.filter_map(|t| self.unit.functions.get(self.word(t)).copied()).collect(),
                 uses: if phony { Vec::new() } else { self.uses(first + 1, end) },
                 value: if phony { Value::Unknown } else { self.value(first + 1, end) },
@@ -387,13 +389,13 @@ impl Finder<'_> {
         if let Some(&value) = values.next() {
             return Value::Expression(value);
         }
-        // Another name for an earlier `let`.
-        let mut words = (name + 1..end).filter(|&t| !matches!(self.tokens[t].kind, Kind::Mark(b'=' | b'(' | b')')));
-        let (Some(word), None) = (words.next(), words.next()) else {
-            return Value::Unknown;
-        };
-        let earlier = self.declaration(name - 1, self.word(word)).map(|at| self.tokens[at].start as usize);
-        let earlier = earlier.and_then(|start| self.cuts.lets.iter().position(|l| l.start == start));
+        // Another name for an earlier `let`, perhaps with its type, or as `&*p`.
+        let equals = (name + 1..end).find(|&t| self.tokens[t].is(b'=')).unwrap_or(end);
+        let mut words = (equals..end).filter(|&t| self.tokens[t].kind == Kind::Word && !self.tokens[t - 1].is(b'.'));
+        let earlier = words.find_map(|word| {
+            let start = self.tokens[self.declaration(name - 1, self.word(word))?].start as usize;
+            self.cuts.lets.iter().position(|l| l.start == start)
+        });
         earlier.map_or(Value::Unknown, Value::Earlier)
     }
 

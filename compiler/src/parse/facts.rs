@@ -7,6 +7,7 @@ use naga::{Block, Expression, Handle, Statement, TypeInner};
 use rustc_hash::FxHashMap as HashMap;
 
 use super::branches::{Choice, choice, reachable};
+use super::lex::{Kind, Token, lex, short_circuits};
 use super::operands::statement_operands;
 use super::pure::writes_only_own;
 use super::unit::Unit;
@@ -67,7 +68,7 @@ pub struct Facts {
     pub types: Vec<Handle<naga::Type>>,
     /// The same of its expressions.
     pub typed: Vec<(Handle<Expression>, Handle<naga::Type>)>,
-    /// Structs that a `const` among its statements names: such a constant leaves no trace in the IR, but stays in the text.
+    /// Structs that a `const` or `const_assert` among its statements names: such a constant leaves no trace in the IR, but stays in the text.
     pub in_constants: Vec<Handle<naga::Type>>,
 }
 
@@ -237,7 +238,7 @@ impl Finder<'_> {
         let span = self.function.expressions.get_span(handle).to_range()?;
         // `a && f()` is a branch in the IR, which stays with all that it calls.
         let text = self.unit.composed.text.get(span.clone()).unwrap_or_default();
-        if text.contains("&&") || text.contains("||") {
+        if (text.contains("&&") || text.contains("||")) && short_circuits(&lex(text)) {
             return Some(Action::Always);
         }
         let mut calls = Vec::new();
@@ -300,14 +301,34 @@ fn in_constants(unit: &Unit, name: &str) -> Vec<Handle<naga::Type>> {
     let word = |at: usize| &unit.file.text[unit.scan.tokens[at].range()];
     for reference in item.references.iter().filter(|r| item.body.contains(&r.token)) {
         let mut statement = (item.body.start..reference.token).rev().take_while(|&at| word(at) != ";");
-        if statement.any(|at| word(at) == "const") {
-            let named = unit.structs.iter().filter(|(_, key)| key.name == word(reference.token));
-            kept.extend(named.map(|(&ty, _)| ty));
+        if statement.any(|at| matches!(word(at), "const" | "const_assert")) {
+            named_structs(unit, word(reference.token), &mut kept);
         }
     }
     kept.sort_unstable();
     kept.dedup();
     kept
+}
+
+/// The structs that a name stands for, itself or as an alias of what holds them.
+fn named_structs(unit: &Unit, name: &str, into: &mut Vec<Handle<naga::Type>>) {
+    let named = unit.structs.iter().filter(|(_, key)| key.name == name);
+    into.extend(named.map(|(&ty, _)| ty));
+    let text = &unit.composed.text;
+    if !text.contains("alias") {
+        return;
+    }
+    let tokens = lex(text);
+    let word = |token: &Token| text.get(token.range()).unwrap_or_default();
+    let mut pairs = tokens.windows(2).enumerate();
+    let Some((at, _)) = pairs.find(|(_, pair)| word(&pair[0]) == "alias" && word(&pair[1]) == name) else {
+        return;
+    };
+    // An alias cannot lead to itself: naga has accepted the unit.
+    let meant = tokens[at + 2..].iter().take_while(|t| !t.is(b';'));
+    for token in meant.filter(|t| t.kind == Kind::Word) {
+        named_structs(unit, word(token), into);
+    }
 }
 
 fn results(function: &naga::Function) -> Vec<(Handle<Expression>, Range<usize>)> {

@@ -36,6 +36,12 @@ impl Token {
     }
 }
 
+/// Whether `&&` or `||` is among the tokens: naga makes a branch of it.
+pub fn short_circuits(tokens: &[Token]) -> bool {
+    let twice = |pair: &[Token], mark| pair[0].is(mark) && pair[1].is(mark) && pair[0].end == pair[1].start;
+    tokens.windows(2).any(|pair| twice(pair, b'&') || twice(pair, b'|'))
+}
+
 /// Splits text into tokens. Text that is no WGSL gives some tokens too: the parser proper judges it.
 pub fn lex(text: &str) -> Vec<Token> {
     let bytes = text.as_bytes();

@@ -242,6 +242,7 @@ fn check(context: &Context, space: &Space, options: &Options) -> Result<(), Fail
         }
     }
     watch.finish();
+    tally.not_empty(&options.pass)?;
     tally.say(context.format)
 }
 
@@ -278,6 +279,15 @@ impl Tally {
             "pass": pass,
             "diagnostics": report.to_json(),
         }));
+    }
+
+    /// A pass that no permutation has is a slip of the pen.
+    fn not_empty(&self, pass: &str) -> Result<(), Failure> {
+        if self.permutations > 0 && self.programs == 0 && self.failed.is_empty() {
+            let text = format!("none of the {} permutations has a pass `{pass}`", self.permutations);
+            return Err(Failure::message(text));
+        }
+        Ok(())
     }
 
     /// Programs for each distinct one.

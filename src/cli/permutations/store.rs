@@ -125,6 +125,9 @@ pub fn emit(context: &Context, space: &Space, options: &Options, folder: &Path) 
         interrupted = !writer.chunk(context, options, &watch, &done, &chunk, &mut manifest)?;
     }
     watch.finish();
+    if !interrupted {
+        writer.tally.not_empty(&options.pass)?;
+    }
     manifest.complete = !interrupted;
     writer.note(&mut manifest, Outputs::default())?;
     if interrupted {
@@ -412,7 +415,7 @@ fn earlier(folder: &Path, now: &Manifest) -> Result<Earlier, Failure> {
         .collect();
     let good = |entry: &Entry| {
         let mut programs = entry.programs.iter();
-        programs.all(|p| p.hash.is_some() && p.files.iter().all(|name| whole.contains_key(name)))
+        !entry.programs.is_empty() && programs.all(|p| is_whole(p, &whole))
     };
     let mut done = Earlier::default();
     for entry in manifest.permutations {
@@ -426,6 +429,14 @@ fn earlier(folder: &Path, now: &Manifest) -> Result<Earlier, Failure> {
     }
     done.files = whole;
     Ok(done)
+}
+
+/// Whether a program has a hash as ours are, and files of that name which are all there: somebody may have edited the manifest.
+fn is_whole(program: &Written, whole: &BTreeMap<String, String>) -> bool {
+    let Some(hash) = &program.hash else { return false };
+    let is_hash = hash.len() == 32 && hash.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
+    let its_own = |name: &String| whole.contains_key(name) && name.strip_prefix(hash.as_str()).is_some_and(|rest| rest.starts_with('.'));
+    is_hash && !program.files.is_empty() && program.files.iter().all(its_own)
 }
 
 /// Hash of a file's bytes; `None` where it is not there.
