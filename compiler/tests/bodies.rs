@@ -35,6 +35,10 @@ fn other(x: f32) -> f32 {
     return x * 5.0;
 }
 alias Alias = S;
+const WHOLE = S(1.0, 2.0, vec2f(3.0));
+const LISTED = array<T, 2>(T(1.0, 2.0), T(3.0, 4.0));
+const DERIVED = WHOLE.b * 2.0;
+var<private> started: S = S(1.0, 2.0, vec2f(3.0));
 struct T {
     a: f32,
     b: f32,
@@ -211,6 +215,31 @@ const CASES: &[(&str, &str, &str)] = &[
         "const alias of alias",
         NONE,
         "const k = Again(1.0, 2.0, vec2f(3.0)); return x + k.b;",
+    ),
+    (
+        "module constant of a struct",
+        NONE,
+        "var s = S(x, x, vec2f(x)); s.b = 4.0; return s.a + WHOLE.c.x;",
+    ),
+    (
+        "module constants in a chain",
+        NONE,
+        "var s = S(x, x, vec2f(x)); s.b = 4.0; return s.a + DERIVED;",
+    ),
+    (
+        "module constant of an array of structs",
+        NONE,
+        "var t = T(x, x); t.a = 1.0; return t.b + LISTED[u32(x)].b;",
+    ),
+    (
+        "private variable with a struct for a start",
+        NONE,
+        "var s = S(x, x, vec2f(x)); s.b = 4.0; started.c.y = s.a; return s.c.x + started.c.x;",
+    ),
+    (
+        "module constant behind a branch that is never taken",
+        NO,
+        "var s = S(x, x, vec2f(x)); s.b = 4.0; if params.flag { s.a = WHOLE.b; } return s.a;",
     ),
     (
         "const assert struct",

@@ -8,7 +8,7 @@ use std::ops::Range;
 use super::edits::dead_text;
 use crate::manifest::Combine;
 use crate::parse::scan::{Item, ItemKind};
-use crate::parse::{Meaning, Origin, StructKey, Unit, joined, typed_wgsl, wgsl_type, whole_lines};
+use crate::parse::{Meaning, Origin, Unit, joined, typed_wgsl, wgsl_type, whole_lines};
 use crate::plan::{Body, GROUPS, Plan, Planned};
 
 /// Writes the source form.
@@ -235,12 +235,8 @@ impl<'p> Writer<'p> {
 
     fn dead_members(&mut self, home: usize, item: &Item) {
         let unit = &self.plan.homes[home].unit;
-        let key = StructKey {
-            interface: None,
-            name: item.name.clone(),
-        };
         let declared = self.plan.structs.named(&self.plan.homes, self.plan.homes[home].first, &item.name);
-        let Some(id) = declared.filter(|_| !unit.fixed_structs.contains(&key)) else {
+        let Some(id) = declared.filter(|&id| !self.plan.structs.list[id].fixed) else {
             return;
         };
         let text = &unit.file.text;

@@ -7,9 +7,11 @@ use naga::{Block, Expression, Handle, Statement, TypeInner};
 use rustc_hash::FxHashMap as HashMap;
 
 use super::branches::{Choice, choice, reachable};
+use super::cuts::Cuts;
 use super::lex::{Kind, Token, lex, short_circuits};
 use super::operands::statement_operands;
 use super::pure::writes_only_own;
+use super::scan::{ItemKind, Reference};
 use super::unit::Unit;
 
 /// A store, and the struct members that its pointer leads through, the innermost first.
@@ -68,22 +70,26 @@ pub struct Facts {
     pub types: Vec<Handle<naga::Type>>,
     /// The same of its expressions.
     pub typed: Vec<(Handle<Expression>, Handle<naga::Type>)>,
-    /// Structs that a `const` or `const_assert` among its statements names: such a constant leaves no trace in the IR, but stays in the text.
+    /// Types that keep all their members where this function stays: those that a `const` or `const_assert` among its statements names,
+    /// since these leave no trace in the IR, but stay in the text, and those that constants at module scope are composed of.
     pub in_constants: Vec<Handle<naga::Type>>,
 }
 
-/// Facts of a unit's functions by handle, then of its entry points.
+/// Facts of a unit's functions by handle, then of its entry points. The cuts of their texts are known already.
 pub fn facts(unit: &Unit) -> Vec<Facts> {
     let functions = unit.ir.functions.iter().map(|(handle, function)| {
         let name = function.name.as_deref().unwrap_or_default();
-        of_function(unit, function, &unit.info[handle], name)
+        of_function(unit, function, &unit.info[handle], (name, handle.index()))
     });
     let entries = unit.ir.entry_points.iter().enumerate();
-    let entries = entries.map(|(index, entry)| of_function(unit, &entry.function, unit.info.get_entry_point(index), &entry.name));
+    let entries = entries.map(|(index, entry)| {
+        let at = unit.ir.functions.len() + index;
+        of_function(unit, &entry.function, unit.info.get_entry_point(index), (&entry.name, at))
+    });
     functions.chain(entries).collect()
 }
 
-fn of_function(unit: &Unit, function: &naga::Function, info: &naga::valid::FunctionInfo, name: &str) -> Facts {
+fn of_function(unit: &Unit, function: &naga::Function, info: &naga::valid::FunctionInfo, (name, at): (&str, usize)) -> Facts {
     let mut finder = Finder {
         unit,
         function,
@@ -102,7 +108,7 @@ fn of_function(unit: &Unit, function: &naga::Function, info: &naga::valid::Funct
             globals: Vec::new(),
             types: Vec::new(),
             typed: Vec::new(),
-            in_constants: in_constants(unit, name),
+            in_constants: in_constants(unit, name, &unit.cuts[at]),
         },
     };
     finder.block(&function.body);
@@ -295,19 +301,69 @@ pub fn struct_type(unit: &Unit, info: &naga::valid::FunctionInfo, handle: Handle
     unit.structs.contains_key(&ty).then_some(ty)
 }
 
-fn in_constants(unit: &Unit, name: &str) -> Vec<Handle<naga::Type>> {
+fn in_constants(unit: &Unit, name: &str, cuts: &Cuts) -> Vec<Handle<naga::Type>> {
     let mut kept = Vec::new();
     let Some(item) = unit.scan.item(name) else { return kept };
     let word = |at: usize| &unit.file.text[unit.scan.tokens[at].range()];
-    for reference in item.references.iter().filter(|r| item.body.contains(&r.token)) {
+    let is_cut = |r: &&Reference| {
+        let start = unit.scan.tokens[r.token].start as usize;
+        cuts.branches.iter().any(|range| range.contains(&start))
+    };
+    let living: Vec<&Reference> = item.references.iter().filter(|r| !is_cut(r)).collect();
+    for reference in living.iter().filter(|r| item.body.contains(&r.token)) {
         let mut statement = (item.body.start..reference.token).rev().take_while(|&at| word(at) != ";");
         if statement.any(|at| matches!(word(at), "const" | "const_assert")) {
             named_structs(unit, word(reference.token), &mut kept);
         }
     }
+    composed_for(unit, &living, &mut kept);
     kept.sort_unstable();
     kept.dedup();
     kept
+}
+
+/// The types that are composed at module scope, where nothing is trimmed, for the constants and variables that words name, and for
+/// those that these name.
+fn composed_for(unit: &Unit, references: &[&Reference], kept: &mut Vec<Handle<naga::Type>>) {
+    let text_of = |r: &Reference| &unit.file.text[unit.scan.tokens[r.token].range()];
+    let mut queue: Vec<&str> = references.iter().map(|r| text_of(r)).collect();
+    let mut seen: Vec<&str> = Vec::new();
+    while let Some(word) = queue.pop() {
+        if seen.contains(&word) {
+            continue;
+        }
+        seen.push(word);
+        let constant = unit
+            .ir
+            .constants
+            .iter()
+            .find(|(_, c)| c.name.as_deref() == Some(word))
+            .map(|(_, c)| c.init);
+        let mut variables = unit.ir.global_variables.iter();
+        let variable = || variables.find(|(_, v)| v.name.as_deref() == Some(word)).and_then(|(_, v)| v.init);
+        if let Some(init) = constant.or_else(variable) {
+            composed(&unit.ir, init, kept);
+        }
+        if let Some(item) = unit
+            .scan
+            .item(word)
+            .filter(|i| !matches!(i.kind, ItemKind::Function | ItemKind::Struct))
+        {
+            queue.extend(item.references.iter().map(text_of));
+        }
+    }
+}
+
+fn composed(ir: &naga::Module, expression: Handle<Expression>, kept: &mut Vec<Handle<naga::Type>>) {
+    match &ir.global_expressions[expression] {
+        Expression::Compose { ty, components } => {
+            kept.push(*ty);
+            components.iter().for_each(|&component| composed(ir, component, kept));
+        }
+        Expression::ZeroValue(ty) => kept.push(*ty),
+        Expression::Constant(constant) => composed(ir, ir.constants[*constant].init, kept),
+        _ => {}
+    }
 }
 
 /// The structs that a name stands for, itself or as an alias of what holds them.

@@ -151,10 +151,10 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     unit.words = words(&unit);
     unit.words.iter().for_each(|word| unit.words_filter.insert(word_hash(word)));
     unit.interfaces = interfaces(&unit);
-    unit.facts = facts(&unit);
     unit.cuts = functions_of(&unit)
         .map(|(f, item)| item.map_or_else(Cuts::default, |item| cuts(&unit, f, item)))
         .collect();
+    unit.facts = facts(&unit);
     unit.mentions = unit.scan.items.iter().map(|item| mentions(&unit, item)).collect();
     unit.droppable = unit.ir.functions.iter().map(|(_, f)| droppable(&unit.ir, f)).collect();
     unit.params = variable(&unit, "params", &Origin::Params);
@@ -412,12 +412,7 @@ fn fixed_structs(unit: &Unit) -> HashSet<StructKey> {
         .iter()
         .filter(|(_, g)| g.space != naga::AddressSpace::Private)
         .map(|(_, g)| g.ty);
-    // A constant of a struct type is composed at module scope, where nothing is trimmed.
-    let composed = unit.ir.global_expressions.iter().filter_map(|(_, e)| match *e {
-        naga::Expression::Compose { ty, .. } | naga::Expression::ZeroValue(ty) => Some(ty),
-        _ => None,
-    });
-    for ty in shared.chain(composed) {
+    for ty in shared {
         collect_structs(unit, ty, &mut fixed);
     }
     fixed

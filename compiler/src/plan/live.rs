@@ -13,7 +13,6 @@ use crate::parse::{Action, Call, Facts, Store, Unit, expression_operands};
 
 /// Finds out what is alive and writes it into the plan.
 pub fn analyse(plan: &mut Plan) {
-    keep_local_constants(plan);
     let outputs = outputs(plan);
     let functions = std::mem::take(&mut plan.functions);
     let mut walk = Walk {
@@ -44,18 +43,6 @@ pub fn analyse(plan: &mut Plan) {
         planned.live = state.live;
     }
     drop_unneeded(plan);
-}
-
-/// A `const` inside a function leaves no trace in the IR, but stays in the text: its structs keep all their members.
-fn keep_local_constants(plan: &mut Plan) {
-    let mut kept = Vec::new();
-    for planned in &plan.functions {
-        let unit = &plan.homes[planned.home].unit;
-        for &ty in planned.facts(&plan.homes).iter().flat_map(|facts| &facts.in_constants) {
-            used_structs(&plan.structs, &unit.ir, planned.home, ty, &mut |id| kept.push(id));
-        }
-    }
-    kept.into_iter().for_each(|id| plan.structs.list[id].fixed = true);
 }
 
 /// Takes out the functions that only dead calls reached, puts the others into the order in which living calls reach them
@@ -196,6 +183,9 @@ impl<'p> Walk<'p> {
             planned.targets.iter().for_each(|&target| self.need(target));
             return;
         };
+        for &ty in &facts.in_constants {
+            self.keep_all_members(planned.home, ty);
+        }
         self.states[id].live = vec![false; function.expressions.len()];
         self.states[id].read = vec![false; function.expressions.len()];
         facts.reads.iter().for_each(|&h| self.read(id, h));
@@ -205,6 +195,18 @@ impl<'p> Walk<'p> {
             if self.acts(id, named) {
                 self.read(id, named);
             }
+        }
+    }
+
+    /// What constants are composed of is not trimmed.
+    fn keep_all_members(&mut self, home: usize, ty: Handle<naga::Type>) {
+        let mut kept = Vec::new();
+        used_structs(self.structs, &self.homes[home].unit.ir, home, ty, &mut |id| kept.push(id));
+        for id in kept {
+            for member in 0..self.structs.list[id].live.len() as u32 {
+                self.enliven(id, member);
+            }
+            self.structs.list[id].fixed = true;
         }
     }
 
