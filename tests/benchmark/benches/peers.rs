@@ -117,8 +117,10 @@ const QUESTIONS: [Question; 4] = [
 ];
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
+    match process::steadily().and_then(|done| done.map_or_else(|| run().map(|()| true), Ok)) {
+        Ok(true) => ExitCode::SUCCESS,
+        // It has said why.
+        Ok(false) => ExitCode::FAILURE,
         Err(error) => {
             eprintln!("{error}");
             ExitCode::FAILURE
