@@ -386,15 +386,16 @@ fn no_progress_in_logs() {
 /// Catches a manifest that somebody edited and that is believed: permutations without programs or files, or a hash that is none.
 #[test]
 fn an_edited_manifest_is_not_believed() {
+    type Edit = fn(&mut Value);
     let home = tempfile::tempdir().unwrap();
     let folder = home.path().join("out");
     emit(&folder, SPACE, &[]);
     let whole = contents(&folder);
-    let edits: [(&str, &dyn Fn(&mut Value)); 4] = [
-        ("no programs", &|entry| entry["programs"] = Value::Array(Vec::new())),
-        ("no files", &|entry| entry["programs"][0]["files"] = Value::Array(Vec::new())),
-        ("no hash", &|entry| entry["programs"][0]["hash"] = "zzz".into()),
-        ("another's hash", &|entry| entry["programs"][0]["hash"] = "0".repeat(32).into()),
+    let edits: [(&str, Edit); 4] = [
+        ("no programs", |entry| entry["programs"] = Value::Array(Vec::new())),
+        ("no files", |entry| entry["programs"][0]["files"] = Value::Array(Vec::new())),
+        ("no hash", |entry| entry["programs"][0]["hash"] = "zzz".into()),
+        ("another's hash", |entry| entry["programs"][0]["hash"] = "0".repeat(32).into()),
     ];
     for (what, edit) in edits {
         let mut manifest = read(&folder.join("manifest.json"));

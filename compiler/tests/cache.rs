@@ -216,3 +216,17 @@ fn no_key_without_a_tree() {
     let report = load(standard()).key(&recipe("forwrad"), "main").expect_err("no such module");
     assert_eq!(report.diagnostics[0].code, "SW0201", "{report}");
 }
+
+/// Catches a new naga whose products are taken for the old one's.
+#[test]
+fn the_key_has_the_version_of_naga_that_is_linked() {
+    let lock = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../Cargo.lock")).unwrap();
+    let naga = lock
+        .split("[[package]]")
+        .find(|package| package.contains("\nname = \"naga\"\n"))
+        .unwrap();
+    assert!(
+        naga.contains(&format!("\nversion = \"{}\"\n", shadewright_compiler::NAGA)),
+        "{naga}"
+    );
+}
