@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::catalog::Catalog;
+use crate::catalog::{Catalog, Module};
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::hash::structural_hash;
 use crate::link::{link, write_source};
@@ -23,6 +23,8 @@ pub struct Program {
     hash: OnceLock<u128>,
     plan: Plan,
     pass: String,
+    /// Modules of the recipe's own tree, where that declares this pass and is not linked for it.
+    declaring: Vec<Arc<Module>>,
     wgsl: OnceLock<String>,
 }
 
@@ -56,7 +58,8 @@ impl Program {
     /// Whether a catalog would compile the recipe to this program again: no edit between the catalogs touches what it is made of.
     pub fn is_current(&self, catalog: &Catalog) -> bool {
         // A module whose interfaces are edited is not kept either.
-        self.plan.tree.nodes.iter().all(|node| catalog.has_module(&node.module))
+        let linked = self.plan.tree.nodes.iter().map(|node| &node.module);
+        linked.chain(&self.declaring).all(|module| catalog.has_module(module))
     }
 
     /// The tree of the recipe as it was resolved, defaults included: a line a module with its slot path.
@@ -185,9 +188,11 @@ impl Catalog {
                 }
                 let place = Place::new(&node.module.source).keys(&["passes", own, "root"]);
                 let module = self.module_at(&root.module, None, &place)?;
+                let declaring = tree.nodes.iter().map(|node| Arc::clone(&node.module)).collect();
                 let tree = resolve_root(self, module, &root, place)?;
                 let instances = Instances::find(self, &tree);
-                self.plan_tree(tree, instances, &Roots::Main, pass)
+                let plan = self.plan_tree(tree, instances, &Roots::Main, pass)?;
+                Ok(LinkPlan { declaring, ..plan })
             }
             None => {
                 let mut known = vec!["main".to_owned()];
@@ -207,6 +212,7 @@ impl Catalog {
         Ok(LinkPlan {
             plan,
             pass: pass.to_owned(),
+            declaring: Vec::new(),
         })
     }
 
@@ -216,7 +222,7 @@ impl Catalog {
     /// # Errors
     /// The linked module does not pass naga's validator.
     pub fn finish(&self, plan: LinkPlan) -> Result<Program, Report> {
-        let LinkPlan { plan, pass } = plan;
+        let LinkPlan { plan, pass, declaring } = plan;
         roomy(plan.deep, move || {
             let module = link(&plan);
             let validated = match validate(module) {
@@ -236,6 +242,7 @@ impl Catalog {
                 hash,
                 plan,
                 pass,
+                declaring,
                 wgsl,
             })
         })?
@@ -247,6 +254,7 @@ impl Catalog {
 pub struct LinkPlan {
     plan: Plan,
     pass: String,
+    declaring: Vec<Arc<Module>>,
 }
 
 impl LinkPlan {

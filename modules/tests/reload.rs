@@ -99,6 +99,21 @@ fn an_edited_declaration_is_seen() {
     assert_eq!((default(&catalog).as_str(), default(&edited).as_str()), ("12.0", "13.0"));
 }
 
+/// Catches a pass that is taken for current although the module that declares it has changed.
+#[test]
+fn a_pass_goes_with_the_module_that_declares_it() {
+    let library = Arc::new(Edited::default());
+    let catalog = Catalog::load(library.clone()).unwrap();
+    let shadow = |catalog: &Catalog| catalog.compile(&forward(), "perspective.shadow").unwrap();
+    let before = shadow(&catalog);
+    assert!(before.is_current(&catalog.reload().unwrap()));
+    let (root, other) = (r#"root: "depth""#, r#"root: (module: "depth", label: "edited")"#);
+    library.edit("visibility/perspective/module.ron", root, other);
+    let edited = catalog.reload().unwrap();
+    assert!(!before.is_current(&edited));
+    assert_ne!(shadow(&edited).wgsl(), before.wgsl());
+}
+
 /// Catches modules that are kept although the interface that they were checked against has changed.
 #[test]
 fn an_edited_interface_touches_its_users_only() {

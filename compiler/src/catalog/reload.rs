@@ -93,13 +93,16 @@ impl Catalog {
         let manifest = &module.manifest;
         let slots = manifest.slots.values().map(|slot| &slot.interface);
         let mut interfaces = slots.chain(&manifest.uses).chain([&module.category]);
-        if before.source.text != module.source.text || !interfaces.all(|name| lock(&self.interfaces).contains_key(name)) {
+        if before.source.text != module.source.text {
             return Ok(false);
         }
         let Some(unit) = before.variants.all().pop() else {
-            // Never parsed: nothing to keep.
-            return Ok(false);
+            // Never parsed: it is what it declares.
+            return Ok(true);
         };
+        if !interfaces.all(|name| lock(&self.interfaces).contains_key(name)) {
+            return Ok(false);
+        }
         let path = format!("{0}/{1}/{1}.wgsl", module.category, module.name);
         // Not the text alone: an edit in another file, of which this one is made, moves its places.
         Ok(self.library.file(&path)?.is_some_and(|file| file == unit.file))
