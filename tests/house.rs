@@ -68,15 +68,34 @@ fn code(path: &Path) -> Vec<(usize, String)> {
 fn the_arrows_go_one_way() {
     let allowed: BTreeMap<&str, &[&str]> = BTreeMap::from([
         ("shadewright-compiler", &[][..]),
+        ("shadewright-evaluate", &[][..]),
         ("shadewright-modules", &["shadewright-compiler"][..]),
-        ("shadewright-runtime", &["shadewright-compiler", "shadewright-modules"][..]),
+        (
+            "shadewright-runtime",
+            &["shadewright-compiler", "shadewright-evaluate", "shadewright-modules"][..],
+        ),
+        (
+            "shadewright-report",
+            &[
+                "shadewright-compiler",
+                "shadewright-evaluate",
+                "shadewright-modules",
+                "shadewright-runtime",
+            ][..],
+        ),
         (
             "shadewright-benchmark",
             &["shadewright-compiler", "shadewright-modules", "shadewright-runtime"][..],
         ),
         (
             "shadewright",
-            &["shadewright-compiler", "shadewright-modules", "shadewright-runtime"][..],
+            &[
+                "shadewright-compiler",
+                "shadewright-evaluate",
+                "shadewright-modules",
+                "shadewright-report",
+                "shadewright-runtime",
+            ][..],
         ),
         // Somebody else's: the compiler when it runs, the modules when it is built.
         ("renderer", &["shadewright-compiler", "shadewright-modules"][..]),

@@ -1,0 +1,2 @@
+//! Evaluates validated naga modules on the CPU, generic over the number type, and counts what they cost.
+#![forbid(unsafe_code)]

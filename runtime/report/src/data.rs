@@ -1,0 +1,244 @@
+//! What a report says: plain data, written as JSON and drawn as a page.
+//!
+//! Numbers that are not finite have no place in JSON: they are `null` there, and a count says that they were.
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+/// A whole report.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// Where and when the figures come from.
+    pub provenance: Provenance,
+    /// One for each experiment, in the order of categories and files.
+    pub experiments: Vec<Results>,
+    /// Device against evaluator, a row for each function of each module that can be probed.
+    pub agreement: Vec<Agreement>,
+    /// Modules without a row in any experiment: name, and why.
+    pub without: IndexMap<String, String>,
+}
+
+/// Where figures come from.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Name of the device; empty where none was used.
+    pub device: String,
+    /// Driver and its version.
+    pub driver: String,
+    /// Whether the device is a CPU that runs a driver in software: its times are no GPU's.
+    pub is_software: bool,
+    /// Version of this program.
+    pub version: String,
+    /// Commit of the sources, where the program knows it; with `+` where they had been edited.
+    pub commit: String,
+    /// When it was made, RFC 3339, UTC; empty where a report must be reproducible.
+    pub date: String,
+}
+
+/// Results of one experiment.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Results {
+    /// `category/name` or `category/module/name`: unique in the report.
+    pub name: String,
+    /// A line for people.
+    pub title: String,
+    /// What is compared and why, Markdown without headings.
+    pub doc: String,
+    /// Category whose modules are compared.
+    pub category: String,
+    /// Function of its interface.
+    pub function: String,
+    /// Name of the truth, for people.
+    pub truth: String,
+    /// `relative` or `absolute`, and the unit or floor, for people.
+    pub metric: String,
+    /// Configurations sampled, the hard ones not counted.
+    pub configurations: usize,
+    /// Hard configurations.
+    pub hard: usize,
+    /// Seed of the sampling.
+    pub seed: u64,
+    /// Label of the row whose time is 1.
+    pub baseline: String,
+    /// One for each alternative.
+    pub rows: Vec<Row>,
+}
+
+/// One alternative in one experiment.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Name in this experiment.
+    pub label: String,
+    /// Recipe, as RON.
+    pub recipe: String,
+    /// Summary of the recipe's root module.
+    pub summary: String,
+    /// The formula in double precision against the truth; none where the formula is its own truth.
+    pub model: Option<Errors>,
+    /// The formula in f32 on the device against itself in double precision; none without a device.
+    pub rounding: Option<Errors>,
+    /// The same with the evaluator's f32, which is the same on every machine.
+    pub rounding_cpu: Errors,
+    /// The largest relative error that WGSL's accuracy table allows a driver to make of it, over the configurations; none where a branch hangs on it.
+    pub allowed: Option<f64>,
+    /// What happened at hard inputs, and everywhere else.
+    pub verdict: Verdict,
+    /// What the linked program holds.
+    pub cost: Cost,
+    /// What one call executes.
+    pub executed: Executed,
+    /// Time on the device; none without one.
+    pub time: Option<Time>,
+    /// Another row is no worse in error and in cost, and better in one.
+    pub dominated: bool,
+    /// Slice of the domain through the worst input; none where the domain has one dimension or fewer.
+    pub picture: Option<Picture>,
+}
+
+/// Statistics of an error over the configurations, in the experiment's metric.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// Root of the mean square.
+    pub rms: f64,
+    /// Not exceeded by 95 % of the configurations.
+    pub p95: f64,
+    /// Largest among the sampled and hard configurations.
+    pub max: f64,
+    /// Mean with its sign: above 0, the module is too high.
+    pub bias: f64,
+    /// Largest that a search found, at least `max`.
+    pub searched: f64,
+    /// Where that is.
+    pub worst: Worst,
+}
+
+/// One input and what came of it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Worst {
+    /// A row of `probe`'s inputs, to replay it.
+    pub input: serde_json::Value,
+    /// Which of the result's numbers: `x`, `diffuse.y`; empty for a scalar.
+    pub component: String,
+    /// What the module gave; NaN and infinities as text.
+    pub got: serde_json::Value,
+    /// What it should have given.
+    pub expected: serde_json::Value,
+}
+
+/// How often something happened that must not, with one input each that makes it happen.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// Not a number.
+    pub nan: Fault,
+    /// Infinite.
+    pub infinite: Fault,
+    /// Below 0 where the truth is not.
+    pub negative: Fault,
+    /// Jumps where the truth has none.
+    pub discontinuous: Fault,
+}
+
+/// Count of a fault.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fault {
+    /// Configurations with it.
+    pub count: usize,
+    /// The worst of them.
+    pub worst: Option<Worst>,
+}
+
+/// What a linked program holds: counted in its IR, each function once for each of its calls, each loop's body once.
+/// Of a vector operation every component counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Cost {
+    /// Additions and subtractions.
+    pub add: u32,
+    /// Multiplications.
+    pub multiply: u32,
+    /// Divisions and remainders.
+    pub divide: u32,
+    /// Square roots and their inverses.
+    pub root: u32,
+    /// `sin`, `exp2`, `log2`, `pow`, `atan2` and their kind.
+    pub transcendental: u32,
+    /// Comparisons and choices.
+    pub select: u32,
+    /// What integers do.
+    pub integer: u32,
+    /// Texture reads.
+    pub texture: u32,
+    /// Loops.
+    pub loops: u32,
+    /// Branches.
+    pub branches: u32,
+    /// Bytes of uniform buffers.
+    pub uniform_bytes: u32,
+    /// Bindings.
+    pub bindings: u32,
+}
+
+/// Operations that calls executed, over an experiment's configurations: the same kinds as [`Cost`], loops as often as they ran.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Executed {
+    /// Mean of the weighted sum of operations. The weights stand in `spec/report.md`.
+    pub mean: f64,
+    /// Its largest.
+    pub max: f64,
+    /// Mean trips of loops.
+    pub trips: f64,
+    /// Mean texture reads.
+    pub texture: f64,
+}
+
+/// Time on the device as a ratio to the baseline's, in one run with interleaved repetitions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Time {
+    /// Median of the ratios.
+    pub median: f64,
+    /// 10 % of the ratios are below.
+    pub p10: f64,
+    /// 10 % are above.
+    pub p90: f64,
+    /// Median in nanoseconds a call, inputs' fetch and result's store included.
+    pub nanoseconds: f64,
+}
+
+/// A plane through the domain: errors of a grid, row by row from the top.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Picture {
+    /// Names of the inputs along x and y, with their ranges at the picture's edges: `alpha 1e-4 to 1 (log)`.
+    pub axes: [String; 2],
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Errors; null where the module's value is not finite.
+    pub errors: Vec<Option<f64>>,
+    /// Where the worst input is, in columns and rows.
+    pub worst: [f64; 2],
+    /// `model` or `rounding`.
+    pub of: String,
+}
+
+/// Device against evaluator for one function of one module.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Agreement {
+    /// Module, `category/name`.
+    pub module: String,
+    /// Function.
+    pub function: String,
+    /// Results compared, one for each number.
+    pub results: usize,
+    /// Of these, bit for bit the same.
+    pub equal: usize,
+    /// Outside what WGSL's accuracy table allows.
+    pub outside: usize,
+    /// Undecided: a branch hangs on a rounding, so anything goes.
+    pub undecided: usize,
+    /// Largest difference in units in the last place, among those inside.
+    pub ulps: f64,
+    /// Where the largest is, or one of those outside.
+    pub worst: Option<Worst>,
+}
