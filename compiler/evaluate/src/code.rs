@@ -244,7 +244,6 @@ pub(crate) struct ImageUse {
     pub image: At,
     pub dim: ImageDimension,
     pub is_depth: bool,
-    pub arrayed: bool,
     pub leaf: Leaf,
     pub op: ImageOp,
 }
