@@ -1,4 +1,4 @@
-//! The GPU: its device, linked programs as pipelines, typed values as bytes, and `probe`.
+//! The GPU: its device, linked programs as pipelines, and typed values as bytes.
 
 pub mod cache;
 mod device;
@@ -7,7 +7,6 @@ mod kept;
 pub mod layout;
 pub mod pack;
 pub mod pipeline;
-mod probe;
 pub mod resources;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -17,4 +16,3 @@ pub use device::Gpu;
 pub(crate) use device::lock;
 pub use error::{DataError, GpuError, RuntimeError};
 pub use kept::Counts;
-pub use probe::{Names, evaluate, probe};
