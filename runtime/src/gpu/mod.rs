@@ -1,4 +1,4 @@
-//! The GPU: its device, linked programs as pipelines, and typed values as bytes.
+//! The GPU: its device, linked programs as pipelines, typed values as bytes, and the times of passes.
 
 pub mod cache;
 mod device;
@@ -10,9 +10,11 @@ pub mod pipeline;
 pub mod resources;
 #[cfg(test)]
 pub(crate) mod testing;
+pub(crate) mod timer;
 pub(crate) mod value;
 
 pub use device::Gpu;
 pub(crate) use device::lock;
 pub use error::{DataError, GpuError, RuntimeError};
 pub use kept::Counts;
+pub use timer::Timer;

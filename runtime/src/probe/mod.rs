@@ -4,11 +4,13 @@
 //! recipe, function -> Probe: a compute program that calls the function once for each row
 //! rows of JSON     -> Table: bytes, in batches that share parameters and instances     (table)
 //! Probe, Table     -> numbers of the results, on a GPU                                 (gpu)
+//! several of these -> how long each takes on it, against the others                    (time)
 //! ```
 
 mod gpu;
 mod numbers;
 mod table;
+mod time;
 
 use serde_json::{Value as Json, json};
 use shadewright_compiler::catalog::Catalog;
@@ -23,6 +25,7 @@ use numbers::{Number, numbers};
 use table::Names;
 
 pub use table::{Batch, Table};
+pub use time::time;
 
 /// Host resources that the table's two buffers are, as the compiler makes them.
 const INPUT: &str = "probe_input";

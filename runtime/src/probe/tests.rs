@@ -1,11 +1,13 @@
 //! A function of a small module, evaluated on the device.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use serde_json::json;
 use shadewright_compiler::program::Recipe;
 
 use super::gpu::MOST_ROWS;
 use super::*;
-use crate::gpu::testing::{catalog, gpu};
+use crate::gpu::testing::{catalog, gpu, plain_gpu};
 
 const CATEGORY: &str = "(summary: \"tested\", order: 1, group: 2, defaults: {\"S\": {\"alpha\": 0.5}})";
 const INTERFACE: &str = "
@@ -205,4 +207,60 @@ fn a_function_without_arguments_has_rows_too() {
     };
     assert_eq!(run(&[json!({}), json!({})]), [[2.5], [2.5]]);
     assert_eq!(run(&[]), Vec::<Vec<f64>>::new());
+}
+
+/// `eval` of one slow and one fast module.
+fn slow_and_fast() -> [Probe; 2] {
+    let catalog = catalog(&[
+        ("tested/category.ron", "(summary: \"tested\", order: 1, group: 2)"),
+        ("tested/interface.wgsl", "fn eval(x: f32) -> f32 { return 0.0; }"),
+        ("tested/slow/module.ron", "(summary: \"tested\")"),
+        (
+            "tested/slow/slow.wgsl",
+            "fn eval(x: f32) -> f32 { var y = x; for (var i = 0; i < 300; i++) { y = sin(y + x); } return y; }",
+        ),
+        ("tested/fast/module.ron", "(summary: \"tested\")"),
+        ("tested/fast/fast.wgsl", "fn eval(x: f32) -> f32 { return sin(x); }"),
+    ]);
+    ["\"slow\"", "\"fast\""].map(|text| Probe::new(&catalog, &Recipe::parse("test", text).unwrap(), "eval").unwrap())
+}
+
+/// Catches times under another alternative's name, times a pass instead of a row (the fast one has more rows in its pass), and a stop
+/// that is not heard.
+#[test]
+fn times_are_told_apart() {
+    let [slow, fast] = slow_and_fast();
+    let rows = |count: usize| (0..count).map(|i| json!({"x": i})).collect::<Vec<_>>();
+    let (few, many) = (slow.table(&rows(3)).unwrap(), fast.table(&rows(1000)).unwrap());
+    let pipelines = Pipelines::new(&gpu(), None);
+    let stop = AtomicBool::new(false);
+    let times = time(&pipelines, &gpu(), &[(&slow, &few), (&fast, &many)], 7, &stop).unwrap();
+    let times = times.expect("the device has timestamps");
+    assert_eq!(times.iter().map(Vec::len).collect::<Vec<_>>(), [7, 7]);
+    let mut ratios: Vec<f64> = times[0].iter().zip(&times[1]).map(|(slow, fast)| slow / fast).collect();
+    ratios.sort_by(f64::total_cmp);
+    assert!((5.0..20_000.0).contains(&ratios[3]), "{times:?}");
+    // No device needs a millisecond or less than a hundredth of a nanosecond for 300 sines.
+    assert!(times[0].iter().all(|t| (0.01..1e6).contains(t)), "{times:?}");
+
+    stop.store(true, Ordering::Relaxed);
+    let none = time(&pipelines, &gpu(), &[(&slow, &few), (&fast, &many)], 7, &stop).unwrap();
+    assert_eq!(none, Some(vec![vec![], vec![]]));
+    stop.store(false, Ordering::Relaxed);
+    let empty = time(&pipelines, &gpu(), &[(&slow, &slow.table(&[]).unwrap())], 7, &stop);
+    assert_eq!(empty.unwrap_err().to_string(), "table: there are no rows to time");
+}
+
+/// Catches times of something else where the device tells none.
+#[test]
+fn a_device_without_timestamps_gives_no_times() {
+    let [slow, _] = slow_and_fast();
+    let gpu = plain_gpu();
+    let table = slow.table(&[json!({"x": 1})]).unwrap();
+    let times = time(&Pipelines::new(&gpu, None), &gpu, &[(&slow, &table)], 7, &AtomicBool::new(false));
+    assert_eq!(times.unwrap(), None);
+    assert_eq!(
+        crate::gpu::Timer::new(&gpu).unwrap_err().to_string(),
+        format!("timing passes needs timestamp queries on {}, which is not there", gpu.name())
+    );
 }
