@@ -16,6 +16,7 @@ mod probe;
 mod render;
 mod show;
 mod text;
+mod timings;
 mod tree;
 mod why;
 
