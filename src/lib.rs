@@ -14,9 +14,10 @@
 //! A choice is made by linking another function, never by an `if`: what a shader doesn't need is not in it. No function, type,
 //! binding, interpolant or parameter is there that the entry points don't reach.
 //!
-//! This crate is the facade over three, each of which knows only those before it:
+//! This crate is the facade over four; the compiler and the evaluator know none of the others, the rest those before them:
 //!
 //! - [`compiler`]: declarations and WGSL to a validated module, its reflection and its text. No GPU, no files.
+//! - [`evaluate`]: a validated module on the CPU, in f32, f64, or with all that WGSL allows a driver.
 //! - [`modules`]: the standard library, embedded.
 //! - [`runtime`]: wgpu. Scenes to recipes, pipelines, passes, and an HDR frame in physical units.
 //!
@@ -35,5 +36,6 @@
 #![forbid(unsafe_code)]
 
 pub use shadewright_compiler as compiler;
+pub use shadewright_evaluate as evaluate;
 pub use shadewright_modules as modules;
 pub use shadewright_runtime as runtime;
