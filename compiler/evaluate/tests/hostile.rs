@@ -1,5 +1,7 @@
 //! Programs and buffers that mean no good: no panic, no hang, an error that says what it is.
 
+#![allow(clippy::expect_used, clippy::float_cmp, clippy::unwrap_used)] // a helper that fails is a test that fails
+
 mod common;
 
 use std::fmt::Write as _;

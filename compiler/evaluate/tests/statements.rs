@@ -1,5 +1,7 @@
 //! Every kind of statement, with what it must do.
 
+#![allow(clippy::expect_used, clippy::float_cmp, clippy::unwrap_used)] // a helper that fails is a test that fails
+
 mod common;
 
 use common::{floats, ints, run, run_source, uints};

@@ -1,6 +1,6 @@
 //! Reads of textures.
 
-#![allow(clippy::float_cmp)] // exact values
+#![allow(clippy::expect_used, clippy::float_cmp, clippy::unwrap_used)] // exact values; a helper that fails is a test that fails
 
 mod common;
 

@@ -55,8 +55,8 @@ impl<N: Number> Machine<'_, N> {
             M::Asinh => one(self, N::asinh),
             M::Acosh => one(self, N::acosh),
             M::Atanh => one(self, N::atanh),
-            M::Radians => one(self, |x| x.mul(N::from_f32(std::f32::consts::PI / 180.0))),
-            M::Degrees => one(self, |x| x.mul(N::from_f32(180.0 / std::f32::consts::PI))),
+            M::Radians => one(self, |x| x.mul(double(0.017_453_292_519_943_295))),
+            M::Degrees => one(self, |x| x.mul(double(57.295_779_513_082_32))),
             M::Ceil => one(self, N::ceil),
             M::Floor => one(self, N::floor),
             M::Round => one(self, N::round),
@@ -328,6 +328,11 @@ impl<N: Number> Machine<'_, N> {
             self.set(i, Slot::Float(N::unpacked(*x)));
         }
     }
+}
+
+/// A constant of a function, as exact as the number type has it.
+fn double<N: Number>(x: f64) -> N {
+    N::filtered(x, x, x)
 }
 
 /// Of the first rows and columns.

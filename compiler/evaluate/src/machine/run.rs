@@ -223,7 +223,7 @@ impl<N: Number> Machine<'_, N> {
         for i in 0..n {
             let slot = match (op, leaf) {
                 (UnaryOperator::Negate, Leaf::Float) => Slot::Float(self.float(a + i).neg()),
-                (UnaryOperator::LogicalNot, _) => Slot::Bool(self.truth(a + i).not()),
+                (UnaryOperator::LogicalNot, _) => Slot::Bool(self.truth(a + i).negated()),
                 (UnaryOperator::Negate, _) => Slot::Int(self.int(a + i).cast_signed().wrapping_neg()),
                 (UnaryOperator::BitwiseNot, Leaf::Int) => Slot::Int(!self.int(a + i).cast_signed()),
                 (UnaryOperator::BitwiseNot, _) => Slot::Uint(!self.int(a + i)),
@@ -260,7 +260,7 @@ impl<N: Number> Machine<'_, N> {
             (Leaf::Float, B::Divide) => self.floats(to, a, b, n, N::div),
             (Leaf::Float, B::Modulo) => self.floats(to, a, b, n, N::rem),
             (Leaf::Float, B::Equal) => self.compare(to, a, b, n, N::equal),
-            (Leaf::Float, B::NotEqual) => self.compare(to, a, b, n, |x, y| x.equal(y).not()),
+            (Leaf::Float, B::NotEqual) => self.compare(to, a, b, n, |x, y| x.equal(y).negated()),
             (Leaf::Float, B::Less) => self.compare(to, a, b, n, N::less),
             (Leaf::Float, B::LessEqual) => self.compare(to, a, b, n, N::less_equal),
             (Leaf::Float, B::Greater) => self.compare(to, a, b, n, |x, y| y.less(x)),
@@ -273,7 +273,7 @@ impl<N: Number> Machine<'_, N> {
                         B::And | B::LogicalAnd => x.and(y),
                         B::InclusiveOr | B::LogicalOr => x.or(y),
                         B::Equal => x.equals(y),
-                        _ => x.equals(y).not(),
+                        _ => x.equals(y).negated(),
                     };
                     self.set(to + i, Slot::Bool(truth));
                 }
@@ -334,7 +334,7 @@ impl<N: Number> Machine<'_, N> {
                 let whole = x.to_u32();
                 (Slot::Uint(whole.value), whole.sure)
             }
-            (Convert::Value(Leaf::Bool), Slot::Float(x)) => (Slot::Bool(x.equal(N::ZERO).not()), true),
+            (Convert::Value(Leaf::Bool), Slot::Float(x)) => (Slot::Bool(x.equal(N::ZERO).negated()), true),
             (Convert::Value(Leaf::Float), Slot::Int(x)) => (Slot::Float(N::from_i32(x)), true),
             (Convert::Value(Leaf::Float), Slot::Uint(x)) => (Slot::Float(N::from_u32(x)), true),
             (Convert::Value(Leaf::Float), Slot::Bool(x)) => {

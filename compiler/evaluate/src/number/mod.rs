@@ -29,7 +29,7 @@ impl Truth {
 
     /// `!`.
     #[must_use]
-    pub fn not(self) -> Self {
+    pub fn negated(self) -> Self {
         Self {
             value: !self.value,
             ..self
@@ -49,7 +49,7 @@ impl Truth {
     /// `|`: sure where one is surely true.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
-        self.not().and(other.not()).not()
+        self.negated().and(other.negated()).negated()
     }
 
     /// `==` of two truths.
