@@ -2,6 +2,7 @@
 
 mod load;
 mod reload;
+mod signature;
 mod variants;
 
 use std::collections::HashMap;

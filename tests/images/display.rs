@@ -9,7 +9,7 @@ use shadewright::modules::{Folder, Overlay, library};
 use shadewright::runtime::frame::Renderer;
 use shadewright::runtime::scene::SceneFile;
 
-use crate::oracle::display::{log_average, luminance, reinhard_color, saturation_luminance, srgb_encode};
+use shadewright::modules::oracles::display::{log_average, luminance, reinhard_color, saturation_luminance, srgb_encode};
 use crate::view::{GPU, example, parse, read, set};
 
 /// A pass that shows the bits of the exposure's 32-bit float in the four channels of its image, and a material that emits a number given by

@@ -7,7 +7,6 @@ mod flags;
 mod hostile;
 mod maps;
 #[path = "../oracle/mod.rs"]
-mod oracle;
 mod plane;
 mod shadows;
 mod sphere;

@@ -5,7 +5,7 @@ use shadewright::compiler::manifest::Value;
 use shadewright::runtime::mesh::Mesh;
 use shadewright::runtime::scene::SceneFile;
 
-use crate::oracle::reflection::{Surface, microfacet};
+use shadewright::modules::oracles::reflection::{Surface, microfacet};
 use crate::view::{Pinhole, frame, hdr, read, set};
 
 const SCENE: &str = "ggx-sphere.scene.ron";
