@@ -95,7 +95,7 @@ pub enum TruthSource {
 }
 
 /// How far a value is from what it should be.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Metric {
     /// `(value - truth) / max(|truth|, floor)`, of each number.

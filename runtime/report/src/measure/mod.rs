@@ -5,10 +5,12 @@
 //! seed                    -> points of the unit cube -> rows of inputs                    (sample, experiment::domain)
 //! Subject, rows           -> statistics of model error and rounding error                 (errors)
 //!                         -> NaN, infinities, negatives, jumps                            (verdict, jumps)
+//!                         -> the device held against what WGSL allows                  (agree)
 //!                         -> the worst input, by search                                   (search)
 //!                         -> a picture of the plane through it                            (slice)
 //! ```
 
+mod agree;
 mod errors;
 mod jumps;
 mod row;
@@ -22,7 +24,7 @@ use serde_json::{Value as Json, json};
 use shadewright_compiler::Report;
 use shadewright_runtime::gpu::RuntimeError;
 
-pub(crate) use row::{Effort, baseline_row, configurations, row};
+pub(crate) use row::{Effort, Measured, OnDevice, configurations, key, mark_dominated, measure};
 pub(crate) use subject::Subject;
 
 use crate::data::Worst;
@@ -49,6 +51,9 @@ pub enum MeasureError {
         /// What it is.
         why: String,
     },
+    /// A finished row cannot be kept.
+    #[error("a finished row cannot be kept: {0}")]
+    Keep(#[from] std::io::Error),
     /// Somebody asked to stop.
     #[error("interrupted")]
     Interrupted,

@@ -2,12 +2,18 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use std::hash::Hash as _;
+
 use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 use shadewright_evaluate::Allowed;
 use shadewright_runtime::gpu::Gpu;
 use shadewright_runtime::gpu::pipeline::Pipelines;
+use shadewright_runtime::probe::Evaluated;
+use siphasher::sip128::{Hasher128 as _, SipHasher13};
 
+use super::agree::agree;
 use super::errors::{difference, largest, statistics};
 use super::jumps::jumps;
 use super::sample::{Random, latin};
@@ -17,8 +23,8 @@ use super::subject::Subject;
 use super::verdict::{note, verdict};
 use super::{MeasureError, Of, widened, worst_of};
 use crate::cost::{cost, executed};
-use crate::data::{Errors, Row, Verdict};
-use crate::experiment::{Experiment, Range};
+use crate::data::{Agreement, Errors, Provenance, Row, Verdict};
+use crate::experiment::Range;
 
 /// How much is done for a row.
 #[derive(Clone, Copy, Debug)]
@@ -105,6 +111,15 @@ pub(crate) fn configurations(subject: &Subject, effort: &Effort) -> (Vec<Json>, 
     (rows, count)
 }
 
+/// An alternative, measured.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Measured {
+    /// Its row.
+    pub row: Row,
+    /// Device against evaluator; none without a device.
+    pub agreement: Option<Agreement>,
+}
+
 /// A device to measure on, with its pipelines.
 #[derive(Clone, Copy)]
 pub(crate) struct OnDevice<'a> {
@@ -113,7 +128,12 @@ pub(crate) struct OnDevice<'a> {
 }
 
 /// Measures an alternative: everything but its time.
-pub(crate) fn row(subject: &Subject, device: Option<OnDevice>, effort: &Effort, cancel: &AtomicBool) -> Result<Row, MeasureError> {
+pub(crate) fn measure(
+    subject: &Subject,
+    device: Option<OnDevice>,
+    effort: &Effort,
+    cancel: &AtomicBool,
+) -> Result<Measured, MeasureError> {
     let check = || if cancel.load(Ordering::Relaxed) { Err(MeasureError::Interrupted) } else { Ok(()) };
     let metric = subject.metric();
     let points = points(subject, effort);
@@ -177,32 +197,51 @@ pub(crate) fn row(subject: &Subject, device: Option<OnDevice>, effort: &Effort, 
     check()?;
 
     // The picture is of the larger error: of the model's, unless that is as small as the rounding.
+    let bounds = subject.probe.on_cpu::<Allowed>(&table)?;
+    let agreement = on_device.as_ref().map(|got| agree(subject, &rows, got, &bounds));
     let size = |place: usize| worst[place].as_ref().map_or(0.0, |(_, size)| *size);
     let shown = if size(0) > size(1) { Of::Model } else { Of::Rounding };
     let picture = match &worst[usize::from(shown == Of::Rounding)] {
         Some((point, _)) => slice(subject, point, shown, effort.picture)?,
         None => None,
     };
-    Ok(Row {
+    let row = Row {
         label: subject.alternative.label.clone(),
         recipe: recipe_text(subject),
         summary: subject.alternative.root.manifest.summary.clone(),
         model,
         rounding,
         rounding_cpu,
-        allowed: allowed(subject, &table, precise)?,
+        allowed: allowed(subject, &bounds, precise),
         verdict,
         cost: cost(&subject.probe),
         executed: executed(&evaluated.counts),
         time: None,
         dominated: false,
         picture,
-    })
+    };
+    Ok(Measured { row, agreement })
 }
 
-/// The part of a row that is equal on every machine, for the baseline.
-pub(crate) fn baseline_row(subject: &Subject, cancel: &AtomicBool) -> Result<Row, MeasureError> {
-    row(subject, None, &Effort::QUICK, cancel)
+/// What a row's results depend on, in one word: the linked function, the inputs, what they should give, the device, the effort.
+pub(crate) fn key(subject: &Subject, rows: &[Json], effort: &Effort, provenance: &Provenance) -> Result<String, MeasureError> {
+    let mut hasher = SipHasher13::new();
+    let Provenance {
+        device, driver, version, ..
+    } = provenance;
+    (device, driver, version, format!("{effort:?}"), subject.probe.program().hash()).hash(&mut hasher);
+    format!("{:?}", subject.metric()).hash(&mut hasher);
+    for row in rows {
+        row.to_string().hash(&mut hasher);
+    }
+    for value in subject.truth(rows)?.iter().flatten().flatten() {
+        value.to_bits().hash(&mut hasher);
+    }
+    let name: String = format!("{}-{}", subject.experiment.name, subject.alternative.label)
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
+        .collect();
+    Ok(format!("{name}-{:032x}", hasher.finish128().as_u128()))
 }
 
 /// The recipe as a person would type it: the bare name, or RON.
@@ -259,8 +298,7 @@ impl Searched<'_, '_> {
 }
 
 /// The largest error that the rules for floating-point numbers allow; none where they allow anything.
-fn allowed(subject: &Subject, table: &shadewright_runtime::probe::Table, precise: &[Vec<f64>]) -> Result<Option<f64>, MeasureError> {
-    let bounds = subject.probe.on_cpu::<Allowed>(table)?;
+fn allowed(subject: &Subject, bounds: &Evaluated<Allowed>, precise: &[Vec<f64>]) -> Option<f64> {
     let mut most = 0.0_f64;
     for ((values, precise), undecided) in bounds.values.iter().zip(precise).zip(&bounds.undecided) {
         if *undecided {
@@ -270,13 +308,13 @@ fn allowed(subject: &Subject, table: &shadewright_runtime::probe::Table, precise
             for end in [value.low(), value.high()] {
                 let size = difference(subject.metric(), end, *precise).abs();
                 if !size.is_finite() {
-                    return Ok(None);
+                    return None;
                 }
                 most = most.max(size);
             }
         }
     }
-    Ok(Some(most))
+    Some(most)
 }
 
 /// Marks the rows that another one beats: no worse in error and in work, and better in one. The error is that of the result: of model and
@@ -292,9 +330,4 @@ pub(crate) fn mark_dominated(rows: &mut [Row]) {
             .iter()
             .any(|other| other.0 <= own.0 && other.1 <= own.1 && (other.0 < own.0 || other.1 < own.1));
     }
-}
-
-/// Whether the experiment leaves anything to draw.
-pub(crate) fn drawn(experiment: &Experiment, effort: &Effort) -> usize {
-    experiment.declared.configurations.min(effort.configurations)
 }
