@@ -109,7 +109,8 @@ pub struct Comparison {
 impl Comparison {
     fn error(&mut self, name: &str, what: &str, old: f64, new: f64) {
         let line = || format!("{name}: {what} {new:.4e}, was {old:.4e}");
-        if new > old * (1.0 + TOLERANCE) && new > NOISE {
+        // Written so that what is no number is worse.
+        if !(new <= old * (1.0 + TOLERANCE) || new <= NOISE) {
             self.worse.push(line());
         } else if new < old * (1.0 - TOLERANCE) && old > NOISE {
             self.better.push(line());
