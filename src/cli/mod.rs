@@ -17,6 +17,7 @@ mod render;
 mod report;
 mod show;
 mod text;
+mod timings;
 mod tree;
 mod watch;
 mod why;

@@ -7,6 +7,9 @@ use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings};
 use super::device::PATIENCE;
 use super::{Gpu, GpuError};
 
+/// Submissions whose times may be waited for.
+pub(crate) const PENDING: usize = 3;
+
 /// Times passes. What it measures are the GPU's own timestamps at a pass's beginning and end; on a software driver those of the CPU that runs it.
 pub struct Timer {
     profiler: GpuProfiler,
@@ -36,8 +39,9 @@ impl Timer {
             return Err(unsupported(format!("timestamp queries on {}", gpu.name())));
         }
         let settings = GpuProfilerSettings {
+            enable_timer_queries: true,
             enable_debug_groups: false,
-            ..Default::default()
+            max_num_pending_frames: PENDING,
         };
         Ok(Self {
             profiler: GpuProfiler::new(gpu.device(), settings).map_err(|error| unsupported(error.to_string()))?,
@@ -60,7 +64,7 @@ impl Timer {
         self.profiler.resolve_queries(commands);
     }
 
-    /// To be called when the commands are submitted. Where three submissions are still waited for, this one's times are lost.
+    /// To be called when the commands are submitted. Where [`PENDING`] are still waited for, the last one's times are lost.
     pub(crate) fn submitted(&mut self) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
         let ended = gpu.scoped("timing passes", |_| self.profiler.end_frame())?;

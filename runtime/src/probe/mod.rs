@@ -12,11 +12,13 @@ mod numbers;
 mod table;
 mod time;
 
+use naga::Expression;
 use serde_json::{Value as Json, json};
 use shadewright_compiler::catalog::Catalog;
 use shadewright_compiler::manifest::ResourceKind;
 use shadewright_compiler::program::{Program, Recipe};
 use shadewright_compiler::reflect::{Binding, BindingType, Fill, Layout};
+use shadewright_evaluate::cost::{Analysis, cost_of_function};
 
 use crate::gpu::pack::unpack;
 use crate::gpu::pipeline::Pipelines;
@@ -89,6 +91,21 @@ impl Probe {
     /// The buffer that gets the results, and the layout of its array.
     pub fn output(&self) -> Option<(&Binding, &Layout)> {
         table_buffer(&self.program, OUTPUT)
+    }
+
+    /// What a call of the function costs: see [`cost_of_function`]. The table's own buffers and the code that reads and writes them do not count.
+    pub fn cost(&self) -> Analysis {
+        let (module, info) = (self.program.validated().module(), self.program.validated().info());
+        let entry = module.entry_points.first().map(|entry| &entry.function.expressions);
+        let called = entry
+            .into_iter()
+            .flat_map(|expressions| expressions.iter())
+            .find_map(|(_, e)| match e {
+                Expression::CallResult(function) => Some(*function),
+                _ => None,
+            });
+        // A probe calls its function, which has a result: without one there is no output.
+        called.map_or_else(Analysis::default, |function| cost_of_function(module, info, function))
     }
 
     /// Names of a result's numbers, in the order in which [`Probe::on_gpu`] gives them: empty for a scalar, `x` of a vector, `diffuse.x` of a

@@ -264,3 +264,28 @@ fn a_device_without_timestamps_gives_no_times() {
         format!("timing passes needs timestamp queries on {}, which is not there", gpu.name())
     );
 }
+
+/// Catches a loop whose end is frozen and not seen, a free one that is, and operations of the probe that count for its function.
+#[test]
+fn frozen_ends_of_loops_are_seen() {
+    let catalog = catalog(&[
+        ("tested/category.ron", "(summary: \"tested\", order: 1, group: 2)"),
+        ("tested/interface.wgsl", "fn eval(x: f32) -> f32 { return 0.0; }"),
+        (
+            "tested/sum/module.ron",
+            "(summary: \"tested\", params: {\"terms\": (type: U32, default: 8)})",
+        ),
+        (
+            "tested/sum/sum.wgsl",
+            "fn eval(x: f32) -> f32 { var s = 0.0; for (var i = 1u; i <= params.terms + 1u; i++) { s += x; } return s; }",
+        ),
+    ]);
+    let cost = |recipe: &str| {
+        let found = Probe::new(&catalog, &Recipe::parse("test", recipe).unwrap(), "eval")
+            .unwrap()
+            .cost();
+        (found.loops[0].trips, found.cost.add, found.cost.bindings)
+    };
+    assert_eq!(cost("\"sum\""), (None, 1, 1));
+    assert_eq!(cost("(module: \"sum\", freeze: {\"terms\": 11})"), (Some(12), 1, 0));
+}
