@@ -75,7 +75,7 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
         outputs.stage(path, Baseline::of(&report).to_json().as_bytes())?;
     } else {
         report.provenance.date = now();
-        let files = report::files(&report).map_err(|error| Failure::message(error.to_string()))?;
+        let files = report::write::files(&report).map_err(|error| Failure::message(error.to_string()))?;
         for (name, bytes) in files {
             let path = options.output.join(name);
             if let Some(folder) = path.parent() {
@@ -85,7 +85,7 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
         }
     }
     if let Some(path) = &options.markdown {
-        outputs.stage(path, report::markdown(&report).as_bytes())?;
+        outputs.stage(path, report::write::markdown(&report).as_bytes())?;
     }
     outputs.commit()?;
     match context.format {

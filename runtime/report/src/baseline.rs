@@ -159,9 +159,16 @@ impl Line {
         for (at, what) in ["NaN", "infinities", "negatives", "discontinuities"].into_iter().enumerate() {
             to.count(name, what, self.faults[at] as f64, new.faults[at] as f64);
         }
-        for ((what, old), (_, new)) in self.cost.named().into_iter().zip(new.cost.named()) {
-            to.count(name, what, f64::from(old), f64::from(new));
+        for ((what, old), (_, new)) in named(&self.cost).into_iter().zip(named(&new.cost)) {
+            to.count(name, &what, old, new);
         }
         to.count(name, "executed operations", self.executed, new.executed);
     }
+}
+
+/// The counts by the names that JSON has.
+fn named(cost: &Cost) -> Vec<(String, f64)> {
+    let json = serde_json::to_value(cost).unwrap_or_default();
+    let fields = json.as_object().into_iter().flatten();
+    fields.map(|(name, count)| (name.clone(), count.as_f64().unwrap_or(f64::NAN))).collect()
 }

@@ -3,7 +3,7 @@
 //! An experiment is data of a library: which modules are compared, over which configurations, against what truth
 //! ([`experiment`]). Running it gives each module a row ([`run`]): the error of its formula against the truth, apart from that the
 //! error of 32-bit arithmetic, what happens at hard inputs, what it holds and executes, and how long it takes beside the others. A report
-//! of all rows is plain data ([`data`]) and is written as a page, as JSON, CSV and pictures ([`files`]). Its part that is equal on every
+//! of all rows is plain data ([`data`]) and is written as a page, as JSON, CSV and pictures ([`write::files`]). Its part that is equal on every
 //! machine is a [`Baseline`] against which a change is held.
 //!
 //! ```text
@@ -13,16 +13,14 @@
 #![forbid(unsafe_code)]
 
 mod baseline;
-mod cost;
 pub mod data;
 pub mod experiment;
 mod measure;
 mod run;
-mod write;
+pub mod write;
 
 pub use baseline::{Baseline, Comparison};
 pub use data::Report;
 pub use experiment::{Experiment, load as experiments};
 pub use measure::MeasureError;
 pub use run::{Done, Options, ReportError, run};
-pub use write::{WriteError, files, markdown};

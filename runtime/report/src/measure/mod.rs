@@ -12,6 +12,7 @@
 
 mod agree;
 mod errors;
+mod executed;
 mod jumps;
 mod row;
 mod sample;

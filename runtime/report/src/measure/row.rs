@@ -15,6 +15,7 @@ use siphasher::sip128::{Hasher128 as _, SipHasher13};
 
 use super::agree::agree;
 use super::errors::{difference, largest, statistics};
+use super::executed::executed;
 use super::jumps::jumps;
 use super::sample::{Random, latin};
 use super::search::search;
@@ -22,7 +23,6 @@ use super::slice::slice;
 use super::subject::Subject;
 use super::verdict::{note, verdict};
 use super::{MeasureError, Of, widened, worst_of};
-use crate::cost::{cost, executed};
 use crate::data::{Agreement, Errors, Provenance, Row, Verdict};
 use crate::experiment::Range;
 
@@ -214,8 +214,8 @@ pub(crate) fn measure(
         rounding_cpu,
         allowed: allowed(subject, &bounds, precise),
         verdict,
-        cost: cost(&subject.probe),
-        executed: executed(&evaluated.counts),
+        cost: subject.probe.cost().cost,
+        executed: executed(&evaluated.executed),
         time: None,
         dominated: false,
         picture,
