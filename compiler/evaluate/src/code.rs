@@ -244,7 +244,6 @@ pub(crate) struct ImageUse {
     pub image: At,
     pub dim: ImageDimension,
     pub is_depth: bool,
-    pub arrayed: bool,
     pub leaf: Leaf,
     pub op: ImageOp,
 }
@@ -304,6 +303,8 @@ pub struct Program {
     pub(crate) images: Vec<ImageUse>,
     pub(crate) traps: Vec<EvaluateError>,
     pub(crate) tallies: Vec<Counts>,
+    /// The tallies from here on are the entry point's own.
+    pub(crate) entry_tallies: usize,
     pub(crate) bound: Vec<Bound>,
     pub(crate) inputs: Vec<Input>,
     pub(crate) result: Option<(At, Tree)>,

@@ -74,7 +74,7 @@ impl Body<'_, '_> {
             }
             _ => return Err(unsupported("such a texture read")),
         };
-        let TypeInner::Image { dim, arrayed, class } = *self.type_of(image) else {
+        let TypeInner::Image { dim, class, .. } = *self.type_of(image) else {
             return Err(unsupported("such a texture"));
         };
         let (leaf, is_depth) = match class {
@@ -93,7 +93,6 @@ impl Body<'_, '_> {
             image: at,
             dim,
             is_depth,
-            arrayed,
             leaf,
             op,
         });

@@ -101,6 +101,7 @@ impl Program {
         }
         let point = &module.entry_points[index];
         let init = compiler.code.len();
+        let entry_tallies = compiler.tallies.len();
         compiler.initialise_globals();
         let frame = compiler.function(&point.function, info.get_entry_point(index))?;
         let inputs = compiler.inputs(&point.function, &frame)?;
@@ -118,6 +119,7 @@ impl Program {
             images: compiler.images,
             traps: compiler.traps,
             tallies: compiler.tallies,
+            entry_tallies,
             bound: compiler.bound,
             inputs,
             result,

@@ -222,8 +222,17 @@ impl<'p, N: Number> Machine<'p, N> {
 
     /// Operations that the last run executed.
     pub fn executed(&self) -> Counts {
+        self.counted(self.program.tallies.len())
+    }
+
+    /// Operations that the last run executed in functions, those in the entry point itself not counted.
+    pub fn executed_in_functions(&self) -> Counts {
+        self.counted(self.program.entry_tallies)
+    }
+
+    fn counted(&self, tallies: usize) -> Counts {
         let mut counts = Counts::default();
-        for (tally, visits) in self.program.tallies.iter().zip(&self.visits) {
+        for (tally, visits) in self.program.tallies.iter().zip(&self.visits).take(tallies) {
             counts += tally.times(*visits);
         }
         counts

@@ -110,6 +110,7 @@ impl<N: Number> Machine<'_, N> {
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // texels of integers hold integers
     fn set_texel(&mut self, at: At, leaf: Leaf, x: Mixed) {
+        self.undecided |= leaf != Leaf::Float && x.low != x.high;
         let slot = match leaf {
             Leaf::Float => Slot::Float(N::filtered(x.value, x.low, x.high)),
             Leaf::Int => Slot::Int(x.value as i32),
@@ -186,6 +187,7 @@ impl<N: Number> Machine<'_, N> {
             place,
             layer,
             offset,
+            spreads: N::SPREADS,
         };
         let reference = depth.map(|at| self.float(at));
         // Compared first, then weighted: less or equal passes.
@@ -233,6 +235,8 @@ struct Look<'t> {
     place: [Along; 2],
     layer: u32,
     offset: [i64; 2],
+    /// Whether the range of what a driver may read is asked for.
+    spreads: bool,
 }
 
 /// Most texels along an axis that an interval is spread over, beyond which it is spread over all.
@@ -299,22 +303,10 @@ impl Look<'_> {
         } else {
             texel((u + 0.5).floor() as i64, (v + 0.5).floor() as i64)
         };
-        // All texels that the interval touches; a weight may be off by 2^-8, so half a texel's 256th more on either side.
-        let slack = 1.0 / 256.0;
-        let range = |i: usize| {
-            let (low, high) = (centre(i, self.place[i].low) - slack, centre(i, self.place[i].high) + slack);
-            let half = if self.sampler.linear { 0.0 } else { 0.5 };
-            let first = (low + half).floor();
-            let last = if self.sampler.linear { high.ceil() } else { (high + half).floor() };
-            if !(last - first <= WIDEST as f64) {
-                return (0, size[i] as i64 - 1);
-            }
-            (first as i64, last as i64)
-        };
-        let is_point = self.place.iter().all(|a| a.low == a.high);
-        if is_point && (!self.sampler.linear || u.fract() == 0.0 && v.fract() == 0.0) {
+        if !self.spreads {
             return mixed;
         }
+        let range = |i: usize| self.touched(i, size[i], self.sampler.linear);
         let (columns, rows) = (range(0), range(1));
         for y in rows.0..=rows.1 {
             for x in columns.0..=columns.1 {
@@ -324,12 +316,38 @@ impl Look<'_> {
         mixed
     }
 
+    /// First and last texel along an axis that the coordinate's interval touches. A weight may be off by 2^-8, so a 256th of a texel
+    /// more on either side.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)] // saturates, and is wrapped
+    fn touched(&self, axis: usize, size: f64, linear: bool) -> (i64, i64) {
+        let slack = 1.0 / 256.0;
+        let half = if linear { 0.0 } else { 0.5 };
+        let first = (self.place[axis].low * size - 0.5 - slack + half).floor();
+        let last = self.place[axis].high * size - 0.5 + slack + half;
+        let last = if linear { last.ceil() } else { last.floor() };
+        // False of what is no number, too.
+        if last - first <= WIDEST as f64 {
+            (first as i64, last as i64)
+        } else {
+            (0, size as i64 - 1)
+        }
+    }
+
     /// The four texels around in the order of `textureGather`: lower left, lower right, upper right, upper left.
     #[allow(clippy::cast_possible_truncation)] // saturates, and is wrapped
     fn gathered(&self, channel: SwizzleComponent, compared: impl Fn(f32) -> Mixed) -> [Mixed; 4] {
         let size = self.texture.size(0).map(f64::from);
         let [x, y] = [0, 1].map(|i| (self.place[i].value * size[i] - 0.5).floor() as i64);
         let [right, lower] = [x.saturating_add(1), y.saturating_add(1)];
-        [(x, lower), (right, lower), (right, y), (x, y)].map(|(x, y)| compared(self.texel(x, y, 0, channel as usize)))
+        let mut gathered = [(x, lower), (right, lower), (right, y), (x, y)].map(|(x, y)| compared(self.texel(x, y, 0, channel as usize)));
+        let [columns, rows] = [0, 1].map(|i| self.touched(i, size[i], true));
+        // Another cell than one's own may be hit: then any of the texels around is one of the four.
+        if self.spreads && (columns.1 - columns.0 > 1 || rows.1 - rows.0 > 1) {
+            for (y, x) in (rows.0..=rows.1).flat_map(|y| (columns.0..=columns.1).map(move |x| (y, x))) {
+                let texel = compared(self.texel(x, y, 0, channel as usize));
+                gathered = gathered.map(|mixed| mixed.or(texel));
+            }
+        }
+        gathered
     }
 }

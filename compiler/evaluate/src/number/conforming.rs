@@ -53,6 +53,7 @@ fn half_down(x: f64) -> f64 {
 
 impl Number for Allowed {
     const NAME: &'static str = "allowed";
+    const SPREADS: bool = true;
     const ZERO: Self = Self {
         value: 0.0,
         low: 0.0,

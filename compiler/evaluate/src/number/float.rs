@@ -15,6 +15,7 @@ macro_rules! number {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, clippy::cast_lossless)] // WGSL's conversions
         impl Number for $float {
             const NAME: &'static str = $name;
+            const SPREADS: bool = false;
             const ZERO: Self = 0.0;
 
             #[inline]

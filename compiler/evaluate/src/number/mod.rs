@@ -72,6 +72,8 @@ pub struct Whole<T> {
 pub trait Number: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// Its name for people.
     const NAME: &'static str;
+    /// Whether it has bounds that are apart.
+    const SPREADS: bool;
     /// 0.
     const ZERO: Self;
 
