@@ -12,6 +12,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use indexmap::IndexMap;
 use naga::valid::Capabilities;
 
+pub use signature::Signature;
+
 use crate::contracts;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::library::Library;
