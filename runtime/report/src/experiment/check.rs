@@ -2,6 +2,7 @@
 
 use indexmap::IndexMap;
 use shadewright_compiler::Report;
+use shadewright_compiler::catalog::Signature;
 use shadewright_compiler::diagnostics::codes;
 use shadewright_compiler::manifest::{Parsed, Step};
 use shadewright_modules::oracles;
@@ -64,6 +65,17 @@ impl Checker<'_> {
                 let label = if known.is_empty() { "nothing to call".to_owned() } else { format!("`function` is one of {}", known.join(", ")) };
                 self.error(index, &[], code, message, label);
                 None
+            }
+        }
+    }
+
+    /// Every argument that has no default of its own is drawn: only structs' members have one.
+    pub(super) fn arguments(&mut self, index: usize, declared: &Declared, signature: &Signature) {
+        for (name, ty) in &signature.arguments {
+            let is_drawn = declared.inputs.keys().any(|path| is_part(path, name));
+            if !is_drawn && !signature.structs.contains_key(ty) {
+                let message = format!("the argument `{name}` of type {ty} is not among the inputs");
+                self.error(index, &[Step::Key("inputs")], codes::EXPERIMENT_INVALID, message, "it has no default");
             }
         }
     }
@@ -183,6 +195,7 @@ fn sound(range: &Range, before: &[&str]) -> Result<(), String> {
         Range::Polar(angle) => sound(angle, before),
         Range::Lobe(width) => known(width),
         Range::Mirror { of, about } => known(of).and_then(|()| known(about)),
+        Range::Half(a, b) => known(a).and_then(|()| known(b)),
         Range::Either(ways) => all(ways),
     }
 }

@@ -1,5 +1,6 @@
 //! From a point of the unit cube to a configuration.
 
+use glam::DVec3;
 use indexmap::IndexMap;
 use serde_json::{Map, Value as Json, json};
 use shadewright_compiler::manifest::{ModuleManifest, Param, ParamMode, ParamType, Value};
@@ -69,7 +70,7 @@ impl Domain {
         axes
     }
 
-    /// The row of a point, every number as a device gets it.
+    /// The row of a point, every argument as a device gets it.
     pub fn row(&self, point: &[f64]) -> Json {
         let mut point = point.iter().copied();
         let mut drawn = IndexMap::new();
@@ -124,7 +125,7 @@ fn declared(param: &Param) -> Option<Range> {
 /// Coordinates that a range takes.
 pub fn coordinates(range: &Range) -> usize {
     match range {
-        Range::Value(_) | Range::Angles(..) | Range::Mirror { .. } => 0,
+        Range::Value(_) | Range::Angles(..) | Range::Mirror { .. } | Range::Half(..) => 0,
         Range::Linear(..) | Range::Log(..) | Range::Whole(..) | Range::Choice(_) => 1,
         Range::Vector(parts) => parts.iter().map(coordinates).sum(),
         Range::Sphere | Range::Hemisphere | Range::Lobe(_) => 2,
@@ -143,7 +144,7 @@ fn name_axes(name: &str, range: &Range, smooth: bool, axes: &mut Vec<Axis>) {
         });
     };
     match range {
-        Range::Value(_) | Range::Angles(..) | Range::Mirror { .. } => {}
+        Range::Value(_) | Range::Angles(..) | Range::Mirror { .. } | Range::Half(..) => {}
         Range::Linear(lo, hi) => axis("", true, Some((*lo, *hi, false))),
         Range::Log(lo, hi) => axis("", true, Some((*lo, *hi, true))),
         Range::Whole(lo, hi) => axis("", false, Some((*lo as f64, *hi as f64, false))),
@@ -188,8 +189,8 @@ fn draw(range: &Range, point: &mut dyn Iterator<Item = f64>, drawn: &IndexMap<&s
     let mut next = || point.next().unwrap_or(0.5).clamp(0.0, 1.0);
     match range {
         Range::Value(value) => as_given(value),
-        Range::Linear(lo, hi) => single(lo + (hi - lo) * next()),
-        Range::Log(lo, hi) => single(logarithmic(*lo, *hi, next())),
+        Range::Linear(lo, hi) => json!(lo + (hi - lo) * next()),
+        Range::Log(lo, hi) => json!(logarithmic(*lo, *hi, next())),
         Range::Whole(lo, hi) => json!(lo + ((hi - lo + 1) as f64 * next()).floor().min((hi - lo) as f64) as i64),
         Range::Choice(values) => values.get(index(next(), values.len())).map_or(Json::Null, as_given),
         Range::Vector(parts) => parts.iter().map(|part| draw(part, point, drawn)).collect(),
@@ -206,6 +207,7 @@ fn draw(range: &Range, point: &mut dyn Iterator<Item = f64>, drawn: &IndexMap<&s
             polar(f64::atan(width * logarithmic(1e-3, 1e3, next())), next() * std::f64::consts::TAU)
         }
         Range::Mirror { of, about } => mirror(drawn.get(of.as_str()), drawn.get(about.as_str())),
+        Range::Half(a, b) => half(drawn.get(a.as_str()), drawn.get(b.as_str())),
         Range::Either(ways) => {
             let way = ways.get(index(next(), ways.len()));
             let taken = way.map_or(0, coordinates);
@@ -232,32 +234,44 @@ fn around(cosine: f64, turn: f64) -> Json {
 }
 
 fn polar(theta: f64, phi: f64) -> Json {
-    vector([theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()])
+    vector(DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()))
+}
+
+fn direction(json: Option<&Json>) -> DVec3 {
+    let component = |i| json.and_then(|v| v.get(i)).and_then(Json::as_f64).unwrap_or(0.0);
+    DVec3::new(component(0), component(1), component(2))
 }
 
 fn mirror(of: Option<&Json>, about: Option<&Json>) -> Json {
-    let read = |json: Option<&Json>| [0, 1, 2].map(|i| json.and_then(|v| v.get(i)).and_then(Json::as_f64).unwrap_or(0.0));
-    let (v, h) = (read(of), read(about));
-    let projection: f64 = v.iter().zip(h).map(|(v, h)| v * h).sum();
-    vector([0, 1, 2].map(|i| 2.0 * projection * h[i] - v[i]))
+    let (v, h) = (direction(of), direction(about));
+    vector(2.0 * v.dot(h) * h - v)
 }
 
-fn vector(v: [f64; 3]) -> Json {
-    v.iter().map(|x| single(*x)).collect()
+fn half(a: Option<&Json>, b: Option<&Json>) -> Json {
+    let (a, b) = (direction(a), direction(b));
+    vector((a + b).try_normalize().unwrap_or(a))
 }
 
-/// A number as a device gets it.
-fn single(x: f64) -> Json {
-    json!(f64::from(x as f32))
+fn vector(v: DVec3) -> Json {
+    json!(v.to_array())
 }
 
-/// A value as written, its numbers as a device gets them; a quantity with a unit stays text.
+/// A value with its numbers as a device gets them.
+fn rounded(value: &Json) -> Json {
+    match value {
+        Json::Array(list) => list.iter().map(rounded).collect(),
+        Json::Number(number) if number.is_f64() => json!(number.as_f64().map(|x| f64::from(x as f32))),
+        other => other.clone(),
+    }
+}
+
+/// A value as written.
 fn as_given(value: &Value) -> Json {
     match value {
         Value::Bool(b) => json!(b),
         Value::Number(x) if x.fract() == 0.0 && x.abs() < 1e15 => json!(*x as i64),
-        Value::Number(x) => single(*x),
-        Value::List(list) => list.iter().map(|x| single(*x)).collect(),
+        Value::Number(x) => json!(x),
+        Value::List(list) => json!(list),
         Value::Text(text) => json!(text),
     }
 }
@@ -266,13 +280,16 @@ fn as_given(value: &Value) -> Json {
 fn row_of(drawn: &IndexMap<&str, Json>) -> Json {
     let mut row = Map::new();
     for (path, value) in drawn.iter().filter(|(path, _)| !path.starts_with('_')) {
+        // A parameter is rounded where it is read: rounded before, an end of its range may be outside.
         if let Some(field) = path.strip_prefix("instances.") {
             let list = row.entry("instances").or_insert_with(|| json!([{}]));
             if let Some(instance) = list.get_mut(0) {
                 instance[field] = value.clone();
             }
-        } else {
+        } else if path.starts_with("params.") {
             put(&mut row, path, value.clone());
+        } else {
+            put(&mut row, path, rounded(value));
         }
     }
     Json::Object(row)

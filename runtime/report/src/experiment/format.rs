@@ -128,6 +128,8 @@ pub enum Hard {
         /// The unit vector.
         about: String,
     },
+    /// As [`Range::Half`].
+    Half(String, String),
 }
 
 impl Hard {
@@ -141,6 +143,7 @@ impl Hard {
                 of: of.clone(),
                 about: about.clone(),
             }],
+            Self::Half(a, b) => vec![Range::Half(a.clone(), b.clone())],
         }
     }
 }
@@ -179,6 +182,8 @@ pub enum Range {
         /// The unit vector.
         about: String,
     },
+    /// The unit vector between the directions of these two names; the first where they are opposite.
+    Half(String, String),
     /// One of these ways to draw.
     Either(Vec<Range>),
 }

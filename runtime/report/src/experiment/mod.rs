@@ -103,6 +103,9 @@ pub fn read(catalog: &Catalog, category: &str, folder: &str, path: &str, text: &
         let alternatives = alternatives(catalog, category, folder, declared, |report| checker.adopt(index, report));
         checker.experiment(index, declared, function.as_deref(), &alternatives);
         let Some(function) = function else { continue };
+        if let Some(signature) = catalog.signature(category, &function)? {
+            checker.arguments(index, declared, &signature);
+        }
         experiments.push(Experiment {
             name,
             folder: folder.to_owned(),

@@ -2,11 +2,11 @@
 
 use serde_json::Value as Json;
 
-use super::errors::difference;
 use super::sample::Random;
 use super::subject::Subject;
 use super::{MeasureError, worst_of};
 use crate::data::Fault;
+use crate::experiment::Metric;
 
 /// A jump is as large as this share of the values beside it, or of the metric's unit. Smaller ones are not told from a steep slope.
 const JUMP: f64 = 0.01;
@@ -64,10 +64,13 @@ fn middle(ends: &[Vec<f64>; 2]) -> Vec<f64> {
     ends[0].iter().zip(&ends[1]).map(|(a, b)| (a + b) / 2.0).collect()
 }
 
-/// Largest difference of two results' numbers, in the metric.
+/// Largest difference of two results' numbers, as a share of the larger one where the metric is relative: neither of them is the truth.
 fn change(subject: &Subject, a: &[f64], b: &[f64]) -> f64 {
-    let sizes = a.iter().zip(b).map(|(a, b)| difference(subject.metric(), *a, *b).abs());
-    sizes.fold(0.0, f64::max)
+    let size = |(a, b): (&f64, &f64)| match subject.metric() {
+        Metric::Relative { floor } => (a - b).abs() / a.abs().max(b.abs()).max(*floor),
+        Metric::Absolute { .. } => (a - b).abs(),
+    };
+    a.iter().zip(b).map(size).fold(0.0, f64::max)
 }
 
 fn count(subject: &Subject, segments: &[Segment]) -> Result<Fault, MeasureError> {
