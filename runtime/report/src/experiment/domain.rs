@@ -196,11 +196,10 @@ fn draw(range: &Range, point: &mut dyn Iterator<Item = f64>, drawn: &IndexMap<&s
         Range::Vector(parts) => parts.iter().map(|part| draw(part, point, drawn)).collect(),
         Range::Sphere => around(1.0 - 2.0 * next(), next()),
         Range::Hemisphere => around(1.0 - next(), next()),
-        Range::Angles(theta, phi) => polar(theta.to_radians(), phi.to_radians()),
+        Range::Angles(theta, phi) => at_degrees(*theta, *phi),
         Range::Polar(angle) => {
             let theta = draw(angle, point, drawn).as_f64().unwrap_or(0.0);
-            let turn = point.next().unwrap_or(0.5);
-            polar(theta.to_radians(), turn * std::f64::consts::TAU)
+            at_degrees(theta, 360.0 * point.next().unwrap_or(0.5))
         }
         Range::Lobe(width) => {
             let width = drawn.get(width.as_str()).and_then(Json::as_f64).unwrap_or(1.0);
@@ -235,6 +234,20 @@ fn around(cosine: f64, turn: f64) -> Json {
 
 fn polar(theta: f64, phi: f64) -> Json {
     vector(DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()))
+}
+
+/// A unit vector by degrees to +z and around it. Right angles are exact: the cosine of pi / 2 in double precision is above 0, and so would be
+/// a direction that should lie in the horizon.
+fn at_degrees(theta: f64, phi: f64) -> Json {
+    let turn = |degrees: f64| match (degrees / 90.0).rem_euclid(4.0) {
+        0.0 => (0.0, 1.0),
+        1.0 => (1.0, 0.0),
+        2.0 => (0.0, -1.0),
+        3.0 => (-1.0, 0.0),
+        _ => degrees.to_radians().sin_cos(),
+    };
+    let ((sin_t, cos_t), (sin_p, cos_p)) = (turn(theta), turn(phi));
+    vector(DVec3::new(sin_t * cos_p, sin_t * sin_p, cos_t))
 }
 
 fn direction(json: Option<&Json>) -> DVec3 {
