@@ -34,11 +34,7 @@ pub struct Drawing {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
     /// A line through points.
-    Line {
-        points: Vec<[f64; 2]>,
-        colour: Colour,
-        width: f64,
-    },
+    Line { points: Vec<[f64; 2]>, colour: Colour, width: f64 },
     /// A filled circle.
     Disc { centre: [f64; 2], radius: f64, colour: Colour },
     /// A circle's line.
@@ -102,7 +98,7 @@ pub struct Figure {
 pub struct Figures {
     /// Anchor of the experiment in the page: the part of its files' names.
     pub name: String,
-    /// Model error, then rounding error; none where there are no rows.
+    /// Model error, then rounding error; none where there are fewer than two rows, since one has nothing to be compared with.
     pub plots: Vec<Figure>,
     /// What the plots say beneath.
     pub captions: Vec<String>,
@@ -127,8 +123,11 @@ pub fn figures(report: &Report) -> Result<Vec<Figures>, WriteError> {
 }
 
 fn of_experiment(results: &Results, name: String, names: &mut Names) -> Result<Figures, WriteError> {
-    let mut figures = Figures { name, ..Figures::default() };
-    if !results.rows.is_empty() {
+    let mut figures = Figures {
+        name,
+        ..Figures::default()
+    };
+    if results.rows.len() >= 2 {
         for (end, plot) in [("model", pareto::of_model(results)), ("rounding", pareto::of_rounding(results))] {
             let path = format!("plots/{}-{end}", figures.name);
             figures.plots.push(paint::figure(path, &pareto::draw(&plot)?)?);

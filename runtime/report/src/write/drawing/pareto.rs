@@ -41,6 +41,8 @@ pub struct Plot {
     title: String,
     error: String,
     points: Vec<Point>,
+    /// Dominated rows are so in this plot's errors.
+    has_frontier: bool,
 }
 
 /// For each point, cost first and error second: whether another is no worse in both and better in one. Of equal points none dominates; NaN
@@ -55,28 +57,34 @@ pub fn of_model(results: &Results) -> Plot {
     let points = results.rows.iter().map(|row| Point {
         error: row.model.as_ref().map_or(0.0, |errors| errors.rms),
         truth: row.model.is_none(),
-        dominated: row.dominated,
         ..point(results, row)
     });
     Plot {
         title: format!("{}: model", results.name),
         error: format!("model error, RMS, {}", results.metric),
         points: points.collect(),
+        has_frontier: true,
     }
 }
 
-/// The largest rounding error, on the device where there was one, else of the evaluator. Which rows are dominated is computed: here the errors
-/// are others.
+/// The largest rounding error, on the device where there was one, else of the evaluator. Where the rows differ in their model, rounding alone makes
+/// none of them useless: a crude formula may round best. Dominated are then the same rows as in the model's plot, and there is no frontier.
+/// Where they do not, rounding and cost decide.
 pub fn of_rounding(results: &Results) -> Plot {
     let mut points: Vec<Point> = results.rows.iter().map(|row| point(results, row)).collect();
-    let places: Vec<[f64; 2]> = points.iter().map(|point| [point.cost, point.error]).collect();
-    for (point, dominated) in points.iter_mut().zip(dominated(&places)) {
-        point.dominated = dominated;
+    let model = |row: &Row| row.model.as_ref().map_or(0.0, |errors| errors.rms);
+    let has_frontier = results.rows.windows(2).all(|pair| model(&pair[0]) == model(&pair[1]));
+    if has_frontier {
+        let places: Vec<[f64; 2]> = points.iter().map(|point| [point.cost, point.error]).collect();
+        for (point, dominated) in points.iter_mut().zip(dominated(&places)) {
+            point.dominated = dominated;
+        }
     }
     Plot {
         title: format!("{}: rounding", results.name),
         error: format!("largest rounding error, {}", results.metric),
         points,
+        has_frontier,
     }
 }
 
@@ -85,7 +93,7 @@ fn point(results: &Results, row: &Row) -> Point {
         label: row.label.clone(),
         cost: row.executed.mean,
         error: row.rounding.as_ref().unwrap_or(&row.rounding_cpu).max,
-        dominated: false,
+        dominated: row.dominated,
         faulty: !of_row(results, row).is_empty(),
         truth: false,
     }
@@ -95,13 +103,18 @@ impl Plot {
     /// What it shows, and which rows have no place in it.
     pub fn caption(&self) -> String {
         let dominated = self.points.iter().filter(|point| point.dominated).count();
-        let mut text = format!(
-            "{} against cost. {} of {} on the frontier, {dominated} dominated.",
-            capital(&self.error),
-            self.points.len() - dominated,
-            self.points.len()
-        );
-        let nowhere: Vec<&str> = self.points.iter().filter(|point| !point.has_place()).map(|point| point.label.as_str()).collect();
+        let left = self.points.iter().filter(|point| point.has_place() && !point.dominated).count();
+        let mut text = format!("{} against cost. ", capital(&self.error));
+        text += &match self.has_frontier {
+            true => format!("{left} of {} on the frontier, {dominated} dominated.", self.points.len()),
+            false => "Grey are those that are dominated in model error and cost.".to_owned(),
+        };
+        let nowhere: Vec<&str> = self
+            .points
+            .iter()
+            .filter(|point| !point.has_place())
+            .map(|point| point.label.as_str())
+            .collect();
         if !nowhere.is_empty() {
             text += &format!(" Not drawn, since an error or a cost is no number: {}.", nowhere.join(", "));
         }
@@ -115,8 +128,17 @@ impl Point {
     }
 
     fn name(&self, error: &str) -> String {
-        let mut name = format!("{}\n{error}: {}\ncost: {} operations", self.label, number(self.error), number(self.cost));
-        for (is, what) in [(self.truth, "it is the truth"), (self.dominated, "dominated"), (self.faulty, "with faults")] {
+        let mut name = format!(
+            "{}\n{error}: {}\ncost: {} operations",
+            self.label,
+            number(self.error),
+            number(self.cost)
+        );
+        for (is, what) in [
+            (self.truth, "it is the truth"),
+            (self.dominated, "dominated"),
+            (self.faulty, "with faults"),
+        ] {
             if is {
                 name += "\n";
                 name += what;
@@ -128,7 +150,9 @@ impl Point {
 
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// # Errors
@@ -147,10 +171,14 @@ pub fn draw(plot: &Plot) -> Result<Drawing, WriteError> {
     let at = |point: &Point| across.place(point.cost).zip(up.place(point.error)).map(|(x, y)| [x, y]);
     // In the order of cost, so that marks and names do not depend on the rows' order more than they must.
     let mut placed: Vec<([f64; 2], &Point)> = points.into_iter().filter_map(|point| Some((at(point)?, point))).collect();
-    placed.sort_by(|a, b| (a.1.dominated, a.0[0], a.0[1]).partial_cmp(&(b.1.dominated, b.0[0], b.0[1])).unwrap_or(std::cmp::Ordering::Equal));
+    placed.sort_by(|a, b| {
+        (a.1.dominated, a.0[0], a.0[1])
+            .partial_cmp(&(b.1.dominated, b.0[0], b.0[1]))
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
 
     axes(&mut drawing.marks, plot, &across, &up);
-    let frontier = frontier(&placed);
+    let frontier = if plot.has_frontier { frontier(&placed) } else { Vec::new() };
     if !frontier.is_empty() {
         drawing.marks.push(Mark::Line {
             points: frontier.clone(),
@@ -158,7 +186,7 @@ pub fn draw(plot: &Plot) -> Result<Drawing, WriteError> {
             width: 1.5,
         });
     }
-    names(&mut drawing.marks, &placed, &frontier)?;
+    names(&mut drawing.marks, &placed, &frontier, [&across, &up])?;
     // The dominated ones under the others.
     for (centre, point) in placed.iter().rev() {
         dot(&mut drawing.marks, *centre, point);
@@ -167,7 +195,7 @@ pub fn draw(plot: &Plot) -> Result<Drawing, WriteError> {
             name: point.name(&plot.error),
         });
     }
-    legend(&mut drawing.marks, &placed)?;
+    legend(&mut drawing.marks, plot, &placed)?;
     Ok(drawing)
 }
 
@@ -192,32 +220,39 @@ fn line(from: [f64; 2], to: [f64; 2], colour: Colour, width: f64) -> Mark {
 
 fn axes(marks: &mut Vec<Mark>, plot: &Plot, across: &Axis, up: &Axis) {
     let [left, top, right, bottom] = AREA;
+    // A line of the grid where there is a label, a short mark where there is none.
     for tick in across.ticks() {
-        marks.push(line([tick.at, top], [tick.at, bottom], Colour::Grid, 1.0));
-        marks.extend(tick.label.map(|label| text([tick.at, bottom + 13.0], label, SMALL, Colour::Faint, Anchor::Middle)));
+        let (from, colour) = if tick.label.is_some() {
+            (top, Colour::Grid)
+        } else {
+            (bottom - 4.0, Colour::Axis)
+        };
+        marks.push(line([tick.at, from], [tick.at, bottom], colour, 1.0));
+        marks.extend(
+            tick.label
+                .map(|label| text([tick.at, bottom + 13.0], label, SMALL, Colour::Faint, Anchor::Middle)),
+        );
     }
     for tick in up.ticks() {
-        marks.push(line([left, tick.at], [right, tick.at], Colour::Grid, 1.0));
-        marks.extend(tick.label.map(|label| text([left - 7.0, tick.at], label, SMALL, Colour::Faint, Anchor::End)));
+        let (to, colour) = if tick.label.is_some() {
+            (right, Colour::Grid)
+        } else {
+            (left + 4.0, Colour::Axis)
+        };
+        marks.push(line([left, tick.at], [to, tick.at], colour, 1.0));
+        marks.extend(
+            tick.label
+                .map(|label| text([left - 7.0, tick.at], label, SMALL, Colour::Faint, Anchor::End)),
+        );
     }
     // The strips of what has no logarithm, cut off by a double line.
-    let [x0, x1] = across.scale();
-    let [y0, y1] = up.scale();
-    for (strip, edge, label) in [(across.zero, x0, "0"), (across.infinite, x1, "∞")] {
-        if let Some(at) = strip {
-            for side in [-1.5, 1.5] {
-                marks.push(line([edge + side, top], [edge + side, bottom], Colour::Axis, 1.0));
-            }
-            marks.push(text([at, bottom + 13.0], label, SMALL, Colour::Ink, Anchor::Middle));
-        }
+    for side in [-1.5, 1.5] {
+        marks.extend(across.cuts().map(|x| line([x + side, top], [x + side, bottom], Colour::Axis, 1.0)));
+        marks.extend(up.cuts().map(|y| line([left, y + side], [right, y + side], Colour::Axis, 1.0)));
     }
-    for (strip, edge, label) in [(up.zero, y0, "0"), (up.infinite, y1, "∞")] {
-        if let Some(at) = strip {
-            for side in [-1.5, 1.5] {
-                marks.push(line([left, edge + side], [right, edge + side], Colour::Axis, 1.0));
-            }
-            marks.push(text([left - 7.0, at], label, SMALL, Colour::Ink, Anchor::End));
-        }
+    for (x, y, label) in [(across.zero, up.zero, "0"), (across.infinite, up.infinite, "∞")] {
+        marks.extend(x.map(|x| text([x, bottom + 13.0], label, SMALL, Colour::Ink, Anchor::Middle)));
+        marks.extend(y.map(|y| text([left - 7.0, y], label, SMALL, Colour::Ink, Anchor::End)));
     }
     marks.push(Mark::Line {
         points: vec![[left, top], [left, bottom], [right, bottom]],
@@ -225,8 +260,14 @@ fn axes(marks: &mut Vec<Mark>, plot: &Plot, across: &Axis, up: &Axis) {
         width: 1.25,
     });
     marks.push(text([10.0, 16.0], short(&plot.title, 68), 15.0, Colour::Ink, Anchor::Start));
-    marks.push(text([10.0, 42.0], format!("↑ {}", short(&plot.error, 76)), TEXT, Colour::Faint, Anchor::Start));
-    marks.push(text([right, bottom + 33.0], "cost: weighted operations executed, mean →", TEXT, Colour::Faint, Anchor::End));
+    marks.push(text([10.0, 42.0], short(&plot.error, 78), TEXT, Colour::Faint, Anchor::Start));
+    marks.push(text(
+        [right, bottom + 33.0],
+        "cost: weighted operations executed, mean",
+        TEXT,
+        Colour::Faint,
+        Anchor::End,
+    ));
 }
 
 /// The border of what some row dominates: a staircase through the rows that none does, from the cheapest.
@@ -245,7 +286,7 @@ fn frontier(placed: &[([f64; 2], &Point)]) -> Vec<[f64; 2]> {
     steps
 }
 
-fn names(marks: &mut Vec<Mark>, placed: &[([f64; 2], &Point)], frontier: &[[f64; 2]]) -> Result<(), WriteError> {
+fn names(marks: &mut Vec<Mark>, placed: &[([f64; 2], &Point)], frontier: &[[f64; 2]], [across, up]: [&Axis; 2]) -> Result<(), WriteError> {
     let labels: Vec<String> = placed.iter().map(|(_, point)| short(&point.label, LETTERS)).collect();
     let mut named = Vec::new();
     for ((at, _), label) in placed.iter().zip(&labels) {
@@ -254,19 +295,24 @@ fn names(marks: &mut Vec<Mark>, placed: &[([f64; 2], &Point)], frontier: &[[f64;
             size: [width(label, TEXT)?, TEXT],
         });
     }
-    let lines: Vec<[[f64; 2]; 2]> = frontier.windows(2).map(|pair| [pair[0], pair[1]]).collect();
     let [left, top, right, bottom] = AREA;
-    let places = place(&named, &lines, [left + 3.0, top, right + 10.0, bottom - 2.0]);
+    let mut lines: Vec<[[f64; 2]; 2]> = frontier.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+    lines.extend(across.cuts().map(|x| [[x, top], [x, bottom]]));
+    lines.extend(up.cuts().map(|y| [[left, y], [right, y]]));
+    let places = place(&named, &lines, [left + 3.0, top, right + 6.0, bottom - 2.0]);
     for (((at, point), label), space) in placed.iter().zip(labels).zip(&places) {
         let Some(space) = space else { continue };
         let from = nearest(*space, *at);
         let away = [from[0] - at[0], from[1] - at[1]];
         let distance = away[0].hypot(away[1]);
         if distance > RADIUS + 12.0 {
-            let edge = [at[0] + away[0] / distance * (RADIUS + 2.0), at[1] + away[1] / distance * (RADIUS + 2.0)];
+            let edge = [
+                at[0] + away[0] / distance * (RADIUS + 2.0),
+                at[1] + away[1] / distance * (RADIUS + 2.0),
+            ];
             marks.push(line(edge, from, Colour::Dominated, 1.0));
         }
-        let colour = if point.dominated { Colour::Dominated } else { Colour::Ink };
+        let colour = if point.dominated { Colour::Faint } else { Colour::Ink };
         marks.push(text([space[0], (space[1] + space[3]) / 2.0], label, TEXT, colour, Anchor::Start));
     }
     let missing = places.iter().filter(|place| place.is_none()).count();
@@ -305,7 +351,7 @@ fn dot(marks: &mut Vec<Mark>, centre: [f64; 2], point: &Point) {
 }
 
 /// What the marks mean, of those that there are.
-fn legend(marks: &mut Vec<Mark>, placed: &[([f64; 2], &Point)]) -> Result<(), WriteError> {
+fn legend(marks: &mut Vec<Mark>, plot: &Plot, placed: &[([f64; 2], &Point)]) -> Result<(), WriteError> {
     let plain = Point {
         label: String::new(),
         cost: 0.0,
@@ -315,11 +361,25 @@ fn legend(marks: &mut Vec<Mark>, placed: &[([f64; 2], &Point)]) -> Result<(), Wr
         truth: false,
     };
     let has = |of: fn(&Point) -> bool| placed.iter().any(|(_, point)| of(point));
-    let grey = Point { dominated: true, ..plain.clone() };
+    let grey = Point {
+        dominated: true,
+        ..plain.clone()
+    };
     let entries = [
-        (has(|point| !point.dominated), plain.clone(), "on the frontier"),
+        (
+            has(|point| !point.dominated),
+            plain.clone(),
+            if plot.has_frontier { "on the frontier" } else { "not dominated" },
+        ),
         (has(|point| point.dominated), grey, "dominated"),
-        (has(|point| point.truth), Point { truth: true, ..plain.clone() }, "the truth itself"),
+        (
+            has(|point| point.truth),
+            Point {
+                truth: true,
+                ..plain.clone()
+            },
+            "the truth itself",
+        ),
         (has(|point| point.faulty), Point { faulty: true, ..plain }, "with faults"),
     ];
     let mut x = AREA[0] + 6.0;
