@@ -1,5 +1,7 @@
 //! The page in a browser, where there is one: Chromium without a window.
 
+#![allow(clippy::expect_used)]
+
 mod sample;
 
 use std::path::{Path, PathBuf};

@@ -1,5 +1,7 @@
 //! The page: what it says, and that what it quotes can do nothing.
 
+#![allow(clippy::expect_used)]
+
 mod sample;
 
 use std::collections::BTreeSet;

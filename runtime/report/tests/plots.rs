@@ -1,5 +1,7 @@
 //! Plots and pictures: what is drawn, and that SVG and PNG show the same.
 
+#![allow(clippy::expect_used)]
+
 mod sample;
 
 use std::collections::BTreeMap;

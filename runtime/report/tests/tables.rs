@@ -1,5 +1,7 @@
 //! JSON, CSV and Markdown.
 
+#![allow(clippy::expect_used)]
+
 mod sample;
 
 use shadewright_report::data::{Errors, Report};

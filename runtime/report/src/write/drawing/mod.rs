@@ -1,6 +1,7 @@
 //! Plots and pictures. What is drawn is a list of marks; one painter draws it as SVG and as PNG, so that both show the same.
 
 pub mod axis;
+pub mod chart;
 pub mod colour;
 pub mod label;
 pub mod paint;
@@ -130,7 +131,7 @@ fn of_experiment(results: &Results, name: String, names: &mut Names) -> Result<F
     if results.rows.len() >= 2 {
         for (end, plot) in [("model", pareto::of_model(results)), ("rounding", pareto::of_rounding(results))] {
             let path = format!("plots/{}-{end}", figures.name);
-            figures.plots.push(paint::figure(path, &pareto::draw(&plot)?)?);
+            figures.plots.push(paint::figure(path, &chart::draw(&plot)?)?);
             figures.captions.push(plot.caption());
         }
     }
