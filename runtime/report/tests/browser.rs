@@ -38,7 +38,7 @@ fn load(browser: &Path, folder: &Path, page: &str) -> (String, Vec<String>) {
         .stderr(open("log"))
         .spawn()
         .expect("the browser starts");
-    let end = Instant::now() + Duration::from_secs(90);
+    let end = Instant::now() + Duration::from_secs(60);
     while child.try_wait().expect("a status").is_none() {
         if Instant::now() > end {
             child.kill().expect("it can be ended");
