@@ -89,7 +89,8 @@ fn planted_faults_are_found_and_named() {
 
     let good = row(&report, "ggx");
     let model = |row: &Row| row.model.clone().unwrap();
-    assert!(model(good).searched < 1e-9, "{good:#?}");
+    // 1 / pi in 32 bits is off by 4e-8: the constants are the formula's.
+    assert!(model(good).searched < 1e-6, "{good:#?}");
     assert_eq!((good.verdict.nan.count, good.verdict.infinite.count, good.verdict.negative.count), (0, 0, 0));
     assert_eq!(good.verdict.discontinuous.count, 0, "{:#?}", good.verdict);
 
@@ -106,7 +107,7 @@ fn planted_faults_are_found_and_named() {
     assert_eq!(nan.verdict.nan.count, 1);
     assert!((fault.input["s"]["alpha"].as_f64().unwrap() - 0.01).abs() < 1e-8, "{fault:?}");
     assert_eq!(fault.input["h"], serde_json::json!([0.0, 0.0, 1.0]));
-    assert!(model(nan).searched < 1e-9, "the rest is right");
+    assert!(model(nan).searched < 1e-6, "the rest is right");
 
     let slow = row(&report, "slow");
     let time = slow.time.as_ref().map_or(f64::NAN, |time| time.median / good.time.as_ref().unwrap().median);

@@ -192,7 +192,15 @@ pub(crate) fn measure(
         worst[place] = Some((point, size));
     }
     let mut random = Random::new(subject.experiment.declared.seed, 3);
-    let segments: Vec<_> = points.iter().cycle().take(effort.segments.min(points.len() * 4)).cloned().collect();
+    // Where the error is large a jump is likely; the others are for jumps where it is small on both sides.
+    let mut by_error: Vec<(f64, &Vec<f64>)> = points
+        .iter()
+        .zip(precise.iter().zip(expected))
+        .map(|(point, (got, truth))| (largest(metric, got, truth).0, point))
+        .collect();
+    by_error.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let worst_first = by_error.iter().take(effort.segments / 2).map(|(_, point)| *point);
+    let segments: Vec<_> = worst_first.chain(points.iter().take(effort.segments / 2)).cloned().collect();
     verdict.discontinuous = jumps(subject, &segments, &mut random)?;
     check()?;
 
