@@ -4,9 +4,11 @@
 //! recipe, function -> Probe: a compute program that calls the function once for each row
 //! rows of JSON     -> Table: bytes, in batches that share parameters and instances     (table)
 //! Probe, Table     -> numbers of the results, on a GPU                                 (gpu)
+//!                  -> the same numbers on the CPU, in f32, f64, or with bounds          (cpu)
 //! several of these -> how long each takes on it, against the others                    (time)
 //! ```
 
+mod cpu;
 mod gpu;
 mod numbers;
 mod table;
@@ -26,6 +28,7 @@ use crate::gpu::{Gpu, GpuError, RuntimeError};
 use numbers::{Number, numbers};
 use table::Names;
 
+pub use cpu::Evaluated;
 pub use table::{Batch, Table};
 pub use time::time;
 
