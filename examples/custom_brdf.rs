@@ -7,7 +7,8 @@ use std::sync::Arc;
 use serde_json::json;
 use shadewright::compiler::{Catalog, Library, Recipe};
 use shadewright::modules::{Overlay, library};
-use shadewright::runtime::gpu::{Gpu, probe};
+use shadewright::runtime::gpu::Gpu;
+use shadewright::runtime::probe::probe;
 
 /// A library with one module: a folder would do as well (`shadewright::modules::Folder`).
 struct Mine;

@@ -286,3 +286,37 @@ fn needs_are_listed_without_a_driver() {
     bad(&["render", scene], 2, &["-o <FILE>"]);
     bad(&["render", scene, "--needs", "-o", "a.png"], 2, &["--needs"]);
 }
+
+/// Catches a pass that is left out, shares that are not of the whole, a picture that is not drawn or is another one, and a software driver
+/// that passes for a GPU.
+#[test]
+fn timings_are_told_for_each_pass() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = file(folder.path(), "a.scene.ron", SCENE);
+    let [plain, timed] = ["plain.png", "timed.png"].map(|name| folder.path().join(name));
+    good(&["render", &scene, "-o", plain.to_str().unwrap()]);
+    let json = good(&["render", &scene, "--timings=3", "-o", timed.to_str().unwrap(), "--format", "json"]).json();
+    assert_eq!(std::fs::read(&plain).unwrap(), std::fs::read(&timed).unwrap());
+    assert_eq!((&json["frames"], &json["size"]), (&3.into(), &serde_json::json!([24, 16])));
+    let passes = json["passes"].as_array().expect("a list");
+    let names: Vec<&str> = passes.iter().map(|pass| pass["name"].as_str().expect("a name")).collect();
+    assert_eq!(names, ["scene (forward)", "display (display)"]);
+    let number = |of: &Value, name: &str| of[name].as_f64().unwrap_or_else(|| panic!("{of} has no {name}"));
+    for times in passes.iter().chain([&json["frame"]]) {
+        let [p10, median, p90] = ["p10", "median", "p90"].map(|name| number(times, name));
+        assert!(0.0 < p10 && p10 <= median && median <= p90 && p90 < 1e10, "{times}");
+    }
+    let shares: f64 = passes.iter().map(|pass| number(pass, "share")).sum();
+    assert!((shares - 1.0).abs() < 1e-9, "{json}");
+    assert!(number(&json["cpu"][0], "link") > number(&json["cpu"][1], "link"), "{json}");
+
+    let text = good(&["render", &scene, "--timings"]);
+    let text = text.text();
+    assert!(text.contains(", 24x16, 8 frames after the first\n"), "{text}");
+    assert!(text.contains("\nscene (forward) ") && text.contains("\nall passes "), "{text}");
+    let software = "This device is a CPU that runs a driver in software: these are not a GPU's times";
+    assert_eq!(text.contains(software), json["is_software"] == true, "{text}");
+    bad(&["render", &scene, "--timings=0"], 2, &["1..=1000"]);
+    bad(&["render", &scene, "--timings=many"], 2, &["many"]);
+    bad(&["render", &scene, "--timings", "--needs"], 2, &["--needs"]);
+}

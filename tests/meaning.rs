@@ -12,7 +12,7 @@ use common::gpu;
 use serde_json::json;
 use shadewright::compiler::canonical::canonical_hash;
 use shadewright::compiler::{Catalog, Library, Recipe};
-use shadewright::runtime::gpu::probe;
+use shadewright::runtime::probe::probe;
 
 #[derive(Clone, Default)]
 struct Texts(BTreeMap<String, String>);

@@ -2,6 +2,7 @@
 
 mod load;
 mod reload;
+mod signature;
 mod variants;
 
 use std::collections::HashMap;
@@ -10,6 +11,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use indexmap::IndexMap;
 use naga::valid::Capabilities;
+
+pub use signature::Signature;
 
 use crate::contracts;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};

@@ -5,7 +5,8 @@
 //! (scene)       (scene)                              (frame)     (gpu)        (frame)   (frame)      (image)
 //! ```
 //!
-//! - [`gpu`]: a device of its own or the caller's, typed errors, pipelines by canonical hash, buffers packed by reflection, probes.
+//! - [`gpu`]: a device of its own or the caller's, typed errors, pipelines by canonical hash, buffers packed by reflection.
+//! - [`probe`]: one function of a recipe evaluated over a table of inputs.
 //! - [`frame`]: a frame described by meshes, materials and lights, drawn. Shadow maps and compute passes come from what the
 //!   modules declare.
 //! - [`scene`]: scene files and glTF, and the recipes derived from them.
@@ -20,6 +21,7 @@ pub mod frame;
 pub mod gpu;
 pub mod image;
 pub mod mesh;
+pub mod probe;
 pub mod scene;
 
 pub use naga;

@@ -53,6 +53,7 @@ impl From<RuntimeError> for Failure {
             RuntimeError::Gpu(error) => error.into(),
             RuntimeError::Compile(report) => report.into(),
             RuntimeError::Data(error) => Self::Message(error.to_string()),
+            RuntimeError::Evaluate(error) => Self::Message(error.to_string()),
         }
     }
 }

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value as Json};
-use shadewright::runtime::gpu::{Gpu, probe};
+use shadewright::runtime::gpu::Gpu;
+use shadewright::runtime::gpu::pipeline::Pipelines;
+use shadewright::runtime::probe::Probe;
 
 use super::failure::Failure;
 use super::output::{Outputs, json};
@@ -45,8 +47,9 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
     }
     let recipe = input::recipe(&options.recipe)?;
     let rows = rows(&options.inputs)?;
-    // What is wrong with the recipe is said first, also where there is no GPU.
-    context.catalog.compile_probe(&recipe, &options.function)?;
+    // What is wrong with the recipe or the rows is said first, also where there is no GPU.
+    let probe = Probe::new(&context.catalog, &recipe, &options.function)?;
+    let table = probe.table(&rows)?;
     let gpu = Gpu::headless()?;
     if options.device == Device::Gpu && gpu.is_software() {
         return Err(Failure::NoGpu(format!(
@@ -54,7 +57,7 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
             gpu.name()
         )));
     }
-    let results = probe(&gpu, &context.catalog, &recipe, &options.function, &rows)?;
+    let results = probe.answer(&Pipelines::new(&gpu, None), &gpu, &table)?;
     let mut outputs = Outputs::default();
     let output = options.output.as_deref().unwrap_or(Path::new("-"));
     outputs.stage(output, format!("{}\n", json(&results)?).as_bytes())?;

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use shadewright::compiler::Recipe;
 use shadewright::compiler::manifest::Node;
-use shadewright::runtime::frame::Renderer;
+use shadewright::runtime::frame::{Frame, Renderer, Targets};
 use shadewright::runtime::gpu::Gpu;
 use shadewright::runtime::image::{Hdr, encode_exr, encode_png};
 use shadewright::runtime::scene::SceneFile;
 
 use super::failure::Failure;
 use super::output::Outputs;
-use super::{Context, check, input, needs};
+use super::{Context, check, input, needs, timings};
 
 /// Options of `render`.
 #[derive(Args)]
@@ -20,7 +20,7 @@ pub struct Options {
     /// Scene (*.scene.ron), or - for standard input
     scene: PathBuf,
     /// Picture: *.png as displayed, *.exr the linear HDR frame in cd/m2
-    #[arg(short, value_name = "FILE", required_unless_present = "needs")]
+    #[arg(short, value_name = "FILE", required_unless_present_any = ["needs", "timings"])]
     output: Option<PathBuf>,
     /// Width and height in pixels, instead of the scene's own
     #[arg(long, value_name = "WxH", value_parser = size)]
@@ -34,6 +34,10 @@ pub struct Options {
     /// Draw nothing: list the programs and states that the scene needs before its first frame, in their order. No GPU is touched
     #[arg(long, conflicts_with = "output")]
     needs: bool,
+    /// Say what each pass costs on the GPU, as the median of so many frames after a first one that warms up
+    #[arg(long, value_name = "FRAMES", num_args = 0..=1, require_equals = true, default_missing_value = "8",
+        value_parser = clap::value_parser!(u16).range(1..=1000), conflicts_with = "needs")]
+    timings: Option<u16>,
 }
 
 /// What a picture shows.
@@ -76,27 +80,46 @@ pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
         scene = scene.set(path.trim(), value.trim())?;
     }
     let mut frame = scene.frame(&context.catalog, options.size)?;
-    let (Some(output), Some(kind)) = (output, kind) else {
+    if options.needs {
         return needs::say(&context.catalog, &frame, context.format);
-    };
+    }
     match kind {
-        Kind::Exr => frame.display = None,
-        Kind::Png if frame.display.is_none() => {
+        None => {}
+        Some(Kind::Exr) => frame.display = None,
+        Some(Kind::Png) if frame.display.is_none() => {
             return Err(Failure::message(
                 "the scene has no `display` pass, so there is only an HDR frame: name an .exr file",
             ));
         }
-        Kind::Png => {}
+        Some(Kind::Png) => {}
     }
     let gpu = Gpu::headless()?;
-    let targets = Renderer::new(&gpu, context.catalog).render(&frame)?;
+    let mut renderer = Renderer::new(&gpu, context.catalog);
+    let (targets, times) = match options.timings {
+        None => (renderer.render(&frame)?, None),
+        Some(frames) => {
+            let (targets, times) = timings::take(&mut renderer, &frame, frames)?;
+            (targets, Some(times))
+        }
+    };
+    if let Some(output) = output {
+        write(&gpu, &frame, &targets, output)?;
+    }
+    match times {
+        None => Ok(()),
+        Some(times) => timings::say(&gpu, &frame, &times, context.format),
+    }
+}
+
+/// Writes the picture.
+fn write(gpu: &Gpu, frame: &Frame, targets: &Targets, output: &Path) -> Result<(), Failure> {
     let [width, height] = frame.size;
-    let picture = match targets.read_display(&gpu)? {
+    let picture = match targets.read_display(gpu)? {
         Some(pixels) => encode_png(width, height, &pixels),
         None => encode_exr(&Hdr {
             width,
             height,
-            texels: targets.read_hdr(&gpu)?,
+            texels: targets.read_hdr(gpu)?,
             comment: "linear Rec.709, cd/m2".to_owned(),
         }),
     };

@@ -8,7 +8,8 @@ use std::sync::{Arc, OnceLock};
 use serde_json::{Value as Json, json};
 use shadewright::compiler::{Catalog, Recipe};
 use shadewright::modules::library;
-use shadewright::runtime::gpu::{Gpu, probe as probe_on};
+use shadewright::runtime::gpu::Gpu;
+use shadewright::runtime::probe::probe as probe_on;
 
 /// The standard library's catalog, read once.
 pub fn catalog() -> &'static Catalog {

@@ -4,6 +4,7 @@
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer, Serialize};
+pub use shadewright_evaluate::cost::Cost;
 
 /// A number that is `null` where it was not finite.
 fn or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
@@ -160,37 +161,6 @@ pub struct Fault {
     pub count: usize,
     /// The worst of them.
     pub worst: Option<Worst>,
-}
-
-/// What a linked program holds: counted in its IR, each function once for each of its calls, each loop's body once.
-/// Of a vector operation every component counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Cost {
-    /// Additions and subtractions.
-    pub add: u32,
-    /// Multiplications.
-    pub multiply: u32,
-    /// Divisions and remainders.
-    pub divide: u32,
-    /// Square roots and their inverses.
-    pub root: u32,
-    /// `sin`, `exp2`, `log2`, `pow`, `atan2` and their kind.
-    pub transcendental: u32,
-    /// Comparisons and choices.
-    pub select: u32,
-    /// What integers do.
-    pub integer: u32,
-    /// Texture reads.
-    pub texture: u32,
-    /// Loops.
-    pub loops: u32,
-    /// Branches.
-    pub branches: u32,
-    /// Bytes of uniform buffers.
-    pub uniform_bytes: u32,
-    /// Bindings.
-    pub bindings: u32,
 }
 
 /// Operations that calls executed, over an experiment's configurations: the same kinds as [`Cost`], loops as often as they ran.

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
+use indexmap::IndexSet;
 use shadewright_compiler::manifest::Dispatch;
+use wgpu_profiler::GpuProfilerQuery;
 
 use super::fill::{Filler, Look, Shown, reads_hdr, value_of};
 use super::list::{List, is_mirrored};
@@ -14,7 +16,7 @@ use super::view::Eye;
 use super::{Draw, Frame};
 use crate::gpu::pipeline::{Constants, Pipelines, RenderPipeline, RenderRequest, RenderState};
 use crate::gpu::resources::{constants, depth_attachment, layer_view};
-use crate::gpu::{DataError, RuntimeError};
+use crate::gpu::{DataError, RuntimeError, Timer};
 
 /// State of the scene's pipelines.
 pub(crate) fn scene_state(draw: &Draw, hdr: wgpu::TextureFormat) -> RenderState {
@@ -72,6 +74,8 @@ pub(crate) struct Drawing<'a> {
     pub fill: Filler<'a>,
     /// Only one triangle of each call, and of that only the first texel: enough for a driver that compiles when it draws.
     pub least: bool,
+    /// Times the passes, where somebody wants to know.
+    pub timer: Option<&'a Timer>,
 }
 
 /// One draw call, ready.
@@ -98,20 +102,23 @@ impl Drawing<'_> {
             for (layer, (eye, list)) in (0..).zip(map.eyes.iter().zip(&plan.map_lists[index])) {
                 let look = |draw: &Draw| plan.casters.get(&(index, draw.material));
                 let calls = self.calls(eye, list, look, |_| CASTER)?;
-                self.shadow_layer(&layer_view(texture, layer), &calls);
+                let query = self.query(|| map.name(layer as usize));
+                self.shadow_layer(&layer_view(texture, layer), &calls, query);
             }
         }
         Ok(())
     }
 
     /// Clears a layer of a shadow map and draws into it.
-    pub(super) fn shadow_layer(&mut self, view: &wgpu::TextureView, calls: &[Call]) {
+    pub(super) fn shadow_layer(&mut self, view: &wgpu::TextureView, calls: &[Call], query: Option<GpuProfilerQuery>) {
         let pass = self.commands.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow map"),
             depth_stencil_attachment: Some(depth_attachment(view)),
+            timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });
         draw_calls(pass, calls, self.least);
+        self.end(query);
     }
 
     /// Draws what the camera sees.
@@ -125,6 +132,10 @@ impl Drawing<'_> {
 
     /// Clears the HDR frame and draws into it.
     pub(super) fn scene_calls(&mut self, hdr: &wgpu::TextureView, depth: &wgpu::TextureView, calls: &[Call]) {
+        let query = self.query(|| {
+            let passes: IndexSet<&str> = self.plan.forward.iter().flatten().map(|look| &*look.root.module).collect();
+            format!("scene ({})", Vec::from_iter(passes).join(", "))
+        });
         let [r, g, b] = self.frame.background.to_array().map(f64::from);
         let pass = self.commands.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
@@ -138,9 +149,11 @@ impl Drawing<'_> {
                 },
             })],
             depth_stencil_attachment: Some(depth_attachment(depth)),
+            timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });
         draw_calls(pass, calls, self.least);
+        self.end(query);
     }
 
     /// The draw calls of a view.
@@ -210,15 +223,18 @@ impl Drawing<'_> {
             Dispatch::Frame if !self.least => [0, 1].map(|i| self.frame.size[i].div_ceil(size[i].max(1))),
             _ => [1, 1],
         };
+        let query = self.query(|| reflection.pass.clone());
         let mut pass = self.commands.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some(&reflection.pass),
-            timestamp_writes: None,
+            timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::compute_pass_timestamp_writes),
         });
         pass.set_pipeline(&pipeline.pipeline);
         for (index, group) in (0..).zip(&groups) {
             pass.set_bind_group(index, group, &[]);
         }
         pass.dispatch_workgroups(x, y, 1);
+        drop(pass);
+        self.end(query);
         Ok(())
     }
 
@@ -237,6 +253,7 @@ impl Drawing<'_> {
         }
         let groups = self.fill.groups(&pipeline, look, &shown)?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let query = self.query(|| format!("display ({})", look.root.module));
         let mut pass = self.commands.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("display"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -248,6 +265,7 @@ impl Drawing<'_> {
                     store: wgpu::StoreOp::Store,
                 },
             })],
+            timestamp_writes: query.as_ref().and_then(GpuProfilerQuery::render_pass_timestamp_writes),
             ..Default::default()
         });
         pass.set_pipeline(&pipeline.pipeline);
@@ -258,7 +276,20 @@ impl Drawing<'_> {
             pass.set_scissor_rect(0, 0, 1, 1);
         }
         pass.draw(0..3, 0..1);
+        drop(pass);
+        self.end(query);
         Ok(())
+    }
+
+    /// A query for the next pass, where passes are timed. It goes to [`Drawing::end`] when the pass is recorded.
+    fn query(&mut self, name: impl FnOnce() -> String) -> Option<GpuProfilerQuery> {
+        Some(self.timer?.begin(name(), &mut self.commands))
+    }
+
+    fn end(&mut self, query: Option<GpuProfilerQuery>) {
+        if let (Some(timer), Some(query)) = (self.timer, query) {
+            timer.end(&mut self.commands, query);
+        }
     }
 }
 

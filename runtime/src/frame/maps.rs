@@ -20,6 +20,9 @@ pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(crate) struct Map {
     /// The light, the place of the visibility in it, and the pass.
     key: (String, String, String),
+    /// Name of the kind of light, and how many views each has.
+    pub light: String,
+    pub views: usize,
     pub texels: u32,
     /// One for each layer.
     pub eyes: Vec<Eye>,
@@ -199,10 +202,13 @@ pub(crate) fn maps_of(
                     scene,
                     time: frame.time,
                 };
+                let eyes = eyes(*view, light, lights, &size)?;
                 maps.push(Map {
                     key,
+                    light: light.name.clone(),
+                    views: eyes.len() / lights.instances.len().max(1),
                     texels,
-                    eyes: eyes(*view, light, lights, &size)?,
+                    eyes,
                     root: pass_root.clone(),
                     inherit: inherit.clone(),
                 });
@@ -219,6 +225,19 @@ pub(crate) fn maps_of(
 }
 
 impl Map {
+    /// A layer for people: the light, and which of its views.
+    pub fn name(&self, layer: usize) -> String {
+        let (light, view) = (layer / self.views.max(1), layer % self.views.max(1));
+        let light = match self.eyes.len() / self.views.max(1) {
+            1 => self.light.clone(),
+            _ => format!("{} {}", self.light, light + 1),
+        };
+        match self.views {
+            1 => format!("shadow map of {light}"),
+            views => format!("shadow map of {light}, view {} of {views}", view + 1),
+        }
+    }
+
     /// The recipe that draws an object of this recipe into the map: the pass's own root, with the inherited slots as there.
     /// It depends on what the object is made of, not on whether it receives this light.
     pub fn caster(&self, programs: &Programs, main: &Node) -> Node {

@@ -16,6 +16,7 @@ mod target;
 #[cfg(test)]
 mod tests;
 mod thaw;
+mod times;
 mod upload;
 mod view;
 mod warm;
@@ -26,3 +27,4 @@ pub use needs::{Need, PipelineState, Stage, needs};
 pub use prepare::{Prepared, Progress};
 pub use render::Renderer;
 pub use target::Targets;
+pub use times::{CpuTimes, FrameTimes, PassTime};

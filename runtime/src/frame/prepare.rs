@@ -85,7 +85,9 @@ impl Renderer {
         let made = self.pipelines.counts().misses - before;
         if !steps.stopped() {
             let mut kept = fill::Kept::new();
-            self.draw(frame, &plan, Some(&mut kept), |drawing, targets| drawing.warm(targets, &steps))?;
+            self.draw(frame, &plan, Some(&mut kept), None, |drawing, targets| {
+                drawing.warm(targets, &steps)
+            })?;
         }
         Ok(Prepared {
             pipelines,

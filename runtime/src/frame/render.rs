@@ -5,6 +5,7 @@
 
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::time::Instant;
 
 use rayon::prelude::*;
 use shadewright_compiler::Validated;
@@ -22,6 +23,7 @@ use super::needs::{distinct, requests};
 use super::plan::Plan;
 use super::programs::Programs;
 use super::target::{DISPLAY, HdrFormats, Targets, target};
+use super::times::Clock;
 use super::upload::Uploads;
 use crate::gpu::pipeline::Pipelines;
 use crate::gpu::{Counts, Gpu, GpuError, RuntimeError};
@@ -45,6 +47,7 @@ pub struct Renderer {
     uploads: Uploads,
     kept: Kept,
     formats: Option<HdrFormats>,
+    pub(super) clock: Option<Clock>,
 }
 
 impl Renderer {
@@ -63,6 +66,7 @@ impl Renderer {
             uploads: Uploads::default(),
             kept: Kept::new(),
             formats: None,
+            clock: None,
         }
     }
 
@@ -104,16 +108,25 @@ impl Renderer {
     /// A recipe or value is wrong, the frame's parts do not fit together, or the GPU fails.
     pub fn render(&mut self, frame: &Frame) -> Result<Targets, RuntimeError> {
         let hdr = self.hdr(frame)?;
+        let start = Instant::now();
         let plan = Plan::of(&self.programs, frame, hdr, &Cut::default())?;
+        let planned = Instant::now();
         let wanted = requests(&plan, frame)?;
         let made: Vec<_> = distinct(&wanted).par_iter().map(|request| request.make(&self.pipelines)).collect();
         made.into_iter().collect::<Result<(), GpuError>>()?;
+        if let Some(clock) = &mut self.clock {
+            clock.cpu.link = planned - start;
+            clock.cpu.pipelines = planned.elapsed();
+        }
         self.show(frame, &plan)
     }
 
     /// Draws what is planned.
     pub(super) fn show(&mut self, frame: &Frame, plan: &Plan) -> Result<Targets, RuntimeError> {
-        let made = self.draw(frame, plan, None, |drawing, made| {
+        let start = Instant::now();
+        // Where drawing fails its queries are lost, and with them the timer: it would wait for them.
+        let mut clock = self.clock.take();
+        let result = self.draw(frame, plan, None, clock.as_mut(), |drawing, made| {
             drawing.shadow_maps(&made.depths)?;
             drawing.compute(&plan.before, None)?;
             drawing.scene(&made.hdr_view, &made.depth_view)?;
@@ -122,7 +135,17 @@ impl Renderer {
                 drawing.display(look, texture, &made.hdr_view)?;
             }
             Ok(())
-        })?;
+        });
+        self.clock = match (clock, result.is_ok()) {
+            (Some(mut clock), true) => {
+                clock.cpu.record = start.elapsed();
+                clock.submitted()?;
+                Some(clock)
+            }
+            (Some(_), false) => Some(Clock::new(&self.gpu)?),
+            (None, _) => None,
+        };
+        let made = result?;
         Ok(Targets {
             hdr: made.hdr,
             display: made.display,
@@ -142,6 +165,7 @@ impl Renderer {
         frame: &'p Frame,
         plan: &'p Plan<'p>,
         kept: Option<&mut Kept>,
+        mut clock: Option<&mut Clock>,
         passes: impl FnOnce(&mut Drawing, &Made) -> Result<(), RuntimeError>,
     ) -> Result<Made, RuntimeError> {
         let hdr = target(&self.gpu, plan.hdr, frame.size)?;
@@ -171,12 +195,16 @@ impl Renderer {
                 memo: HashMap::new(),
             },
             least: false,
+            timer: clock.as_deref().map(|clock| &clock.timer),
         };
         passes(&mut drawing, &made)?;
-        let commands = drawing.commands;
+        let mut commands = drawing.commands;
         // Buffers of recipes that the frame has no more.
         drawing.fill.kept.retain(|(recipe, id, ..), _| plan.has(*id, recipe));
         self.gpu.scoped("frame", |_| {
+            if let Some(clock) = &mut clock {
+                clock.timer.resolve(&mut commands);
+            }
             self.gpu.queue().submit([commands.finish()]);
         })?;
         self.uploads.end();

@@ -28,7 +28,7 @@ impl Drawing<'_> {
             let view = layer_view(texture, 0);
             for call in self.calls(eye, list, look, |_| CASTER)? {
                 if warm.is_new(&call) {
-                    self.shadow_layer(&view, std::slice::from_ref(&call));
+                    self.shadow_layer(&view, std::slice::from_ref(&call), None);
                     self.submit(&mut warm, Arc::as_ptr(&call.pipeline).addr() as u128, steps)?;
                 }
             }

@@ -10,7 +10,7 @@ const ADVICE: &str = "Install a GPU driver, or the software one: on Debian and U
 on Fedora `dnf install mesa-vulkan-drivers`, on Arch `pacman -S vulkan-swrast`.";
 
 /// How long one submission may take. A software driver needs minutes for a large reference image; a driver that hangs needs forever.
-const PATIENCE: Duration = Duration::from_secs(900);
+pub(super) const PATIENCE: Duration = Duration::from_secs(900);
 
 /// Features that are used where they are there.
 const WELCOME: wgpu::Features = wgpu::Features::FLOAT32_FILTERABLE

@@ -1,6 +1,7 @@
 //! What can go wrong between a host and its GPU.
 
 use shadewright_compiler::Report;
+use shadewright_evaluate::EvaluateError;
 
 /// Errors of the GPU itself and of its driver.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -88,4 +89,7 @@ pub enum RuntimeError {
     /// The caller's values.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// The evaluator on the CPU.
+    #[error(transparent)]
+    Evaluate(#[from] EvaluateError),
 }

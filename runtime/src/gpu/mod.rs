@@ -1,4 +1,4 @@
-//! The GPU: its device, linked programs as pipelines, typed values as bytes, and `probe`.
+//! The GPU: its device, linked programs as pipelines, typed values as bytes, and the times of passes.
 
 pub mod cache;
 mod device;
@@ -7,14 +7,14 @@ mod kept;
 pub mod layout;
 pub mod pack;
 pub mod pipeline;
-mod probe;
 pub mod resources;
 #[cfg(test)]
 pub(crate) mod testing;
+pub(crate) mod timer;
 pub(crate) mod value;
 
 pub use device::Gpu;
 pub(crate) use device::lock;
 pub use error::{DataError, GpuError, RuntimeError};
 pub use kept::Counts;
-pub use probe::{Names, evaluate, probe};
+pub use timer::Timer;

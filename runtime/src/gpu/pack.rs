@@ -13,7 +13,7 @@ pub type Defaults = IndexMap<String, IndexMap<String, Value>>;
 
 /// Scalar types that a buffer can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Scalar {
+pub(crate) enum Scalar {
     F32,
     U32,
     I32,
@@ -21,14 +21,14 @@ enum Scalar {
 
 /// A scalar, vector (one column) or matrix; every scalar is four bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Shape {
-    scalar: Scalar,
-    rows: usize,
-    columns: usize,
+pub(crate) struct Shape {
+    pub scalar: Scalar,
+    pub rows: usize,
+    pub columns: usize,
 }
 
 impl Shape {
-    fn of(ty: &str) -> Option<Self> {
+    pub fn of(ty: &str) -> Option<Self> {
         let (head, inner) = match ty.strip_suffix('>').and_then(|t| t.split_once('<')) {
             Some((head, inner)) => (head, inner),
             None => ("", ty),
@@ -53,7 +53,7 @@ impl Shape {
     }
 
     /// Byte of a component: the columns of a matrix are aligned as vectors, so those of three rows have a hole.
-    fn offset(self, component: usize) -> usize {
+    pub fn offset(self, component: usize) -> usize {
         let column = match self.rows {
             3 => 16,
             rows => rows * 4,

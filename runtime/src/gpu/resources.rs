@@ -75,6 +75,16 @@ pub fn param_blocks(
     Ok(blocks.into_iter().map(|(key, (_, bytes))| (key, bytes)).collect())
 }
 
+/// Declared fields of an instance's buffer.
+pub(crate) fn fields_of<'a>(reflection: &'a Reflection, instance: &str) -> &'a IndexMap<String, Param> {
+    static NONE: std::sync::LazyLock<IndexMap<String, Param>> = std::sync::LazyLock::new(IndexMap::new);
+    reflection
+        .instances
+        .iter()
+        .find(|i| i.name == instance)
+        .map_or(&NONE, |i| &i.fields)
+}
+
 fn path_of(param: &ParamUse) -> String {
     format!("{}.{}", param.instance, param.name)
 }

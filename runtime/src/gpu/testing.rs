@@ -59,3 +59,16 @@ pub fn pass(wgsl: &str) -> Program {
     let recipe = Recipe::parse("test", "\"tested\"").unwrap();
     catalog.compile(&recipe, "main").unwrap_or_else(|e| panic!("{e}"))
 }
+
+/// The same device as the tests', made without any optional feature.
+pub fn plain_gpu() -> Gpu {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let adapter = adapters.into_iter().find(|adapter| adapter.get_info() == *gpu().info()).unwrap();
+    let request = adapter.request_device(&wgpu::DeviceDescriptor {
+        required_limits: adapter.limits(),
+        ..Default::default()
+    });
+    let (device, queue) = pollster::block_on(request).unwrap();
+    Gpu::from_parts(device, queue)
+}
