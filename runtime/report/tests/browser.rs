@@ -19,8 +19,8 @@ fn chromium() -> Option<PathBuf> {
         .find(|program| program.is_file())
 }
 
-/// Loads a page. Gives what it has become, and what it said on its console.
-fn load(browser: &Path, folder: &Path, page: &str) -> (String, Vec<String>) {
+/// Loads a page with a browser that keeps its things in a folder. Gives what it has become, and what it said on its console.
+fn load(browser: &Path, folder: &Path, page: &Path) -> (String, Vec<String>) {
     let open = |name: &str| std::fs::File::create(folder.join(name)).expect("a file");
     let mut child = Command::new(browser)
         .args([
@@ -32,7 +32,7 @@ fn load(browser: &Path, folder: &Path, page: &str) -> (String, Vec<String>) {
             "--virtual-time-budget=2000",
         ])
         .arg(format!("--user-data-dir={}", folder.join("profile").display()))
-        .arg(format!("file://{}", folder.join(page).display()))
+        .arg(format!("file://{}", page.display()))
         .stdin(Stdio::null())
         .stdout(open("dom"))
         .stderr(open("log"))
@@ -62,11 +62,15 @@ fn a_browser_has_nothing_to_complain() {
         println!("NOT TESTED: there is no Chromium on the path (Debian: apt-get install --no-install-recommends chromium)");
         return;
     };
+    // The files stay, to be looked at.
+    let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join("report");
+    for (name, bytes) in files(&sample::report()).expect("files") {
+        let path = kept.join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        std::fs::write(path, bytes).expect("written");
+    }
     let folder = tempfile::tempdir().expect("a folder");
-    let files = files(&sample::report()).expect("files");
-    let (_, page) = files.into_iter().find(|(name, _)| name == "report.html").expect("a page");
-    std::fs::write(folder.path().join("report.html"), &page).expect("written");
-    let (dom, console) = load(&browser, folder.path(), "report.html");
+    let (dom, console) = load(&browser, folder.path(), &kept.join("report.html"));
     assert_eq!(console, Vec::<String>::new());
     for id in [
         "faults",
@@ -83,7 +87,8 @@ fn a_browser_has_nothing_to_complain() {
     assert_eq!(dom.matches("class=\"copy\"").count(), dom.matches("class=\"command\"").count());
     assert!(dom.matches("<th scope=\"col\"").count() > 20 && dom.contains("<button type=\"button\">RMS</button>"));
     // A page that does complain, lest the log be read wrongly.
-    std::fs::write(folder.path().join("wrong.html"), "<!DOCTYPE html><script>nonsense()</script>").expect("written");
-    let (_, console) = load(&browser, folder.path(), "wrong.html");
+    let wrong = folder.path().join("wrong.html");
+    std::fs::write(&wrong, "<!DOCTYPE html><script>nonsense()</script>").expect("written");
+    let (_, console) = load(&browser, folder.path(), &wrong);
     assert!(console.iter().any(|line| line.contains("nonsense is not defined")), "{console:?}");
 }
