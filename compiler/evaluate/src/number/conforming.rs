@@ -242,11 +242,11 @@ impl Number for Allowed {
     fn min(self, y: Self) -> Self {
         let value = Number::min(self.value, y.value);
         both(value, self, y, |a, b| {
-            let span = if self.is_tiny() && y.is_tiny() {
-                (a.0.min(b.0), a.1.max(b.1))
-            } else {
-                (a.0.min(b.0), a.1.min(b.1))
-            };
+            // Of two subnormals it may be either.
+            let mut span = (a.0.min(b.0), a.1.min(b.1));
+            if let (Some(x), Some(y)) = (self.subnormals(), y.subnormals()) {
+                span = (span.0.min(x.0).min(y.0), span.1.max(x.1).max(y.1));
+            }
             Self::of(value, span)
         })
     }
