@@ -91,7 +91,11 @@ fn count(subject: &Subject, segments: &[[End; 2]]) -> Fault {
             if excess > most {
                 most = excess;
                 // The end that is further from the truth.
-                let end = if drift(subject, &at_truth(b), b) >= drift(subject, &at_truth(a), a) { b } else { a };
+                let end = if drift(subject, &at_truth(b), b) >= drift(subject, &at_truth(a), a) {
+                    b
+                } else {
+                    a
+                };
                 fault.worst = Some(worst_of(subject, &subject.domain.row(&end.point), &end.value, &end.truth));
             }
         }

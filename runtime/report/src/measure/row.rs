@@ -128,13 +128,14 @@ pub(crate) struct OnDevice<'a> {
 }
 
 /// Measures an alternative: everything but its time.
-pub(crate) fn measure(
-    subject: &Subject,
-    device: Option<OnDevice>,
-    effort: &Effort,
-    cancel: &AtomicBool,
-) -> Result<Measured, MeasureError> {
-    let check = || if cancel.load(Ordering::Relaxed) { Err(MeasureError::Interrupted) } else { Ok(()) };
+pub(crate) fn measure(subject: &Subject, device: Option<OnDevice>, effort: &Effort, cancel: &AtomicBool) -> Result<Measured, MeasureError> {
+    let check = || {
+        if cancel.load(Ordering::Relaxed) {
+            Err(MeasureError::Interrupted)
+        } else {
+            Ok(())
+        }
+    };
     let metric = subject.metric();
     let points = points(subject, effort);
     let (rows, _) = configurations(subject, effort);
@@ -158,9 +159,13 @@ pub(crate) fn measure(
             ..errors
         },
     };
-    let mut model = truth.as_ref().map(|truth| with_worst(statistics(metric, precise, truth), precise, truth));
+    let mut model = truth
+        .as_ref()
+        .map(|truth| with_worst(statistics(metric, precise, truth), precise, truth));
     let mut rounding_cpu = with_worst(statistics(metric, &single, precise), &single, precise);
-    let mut rounding = on_device.as_ref().map(|got| with_worst(statistics(metric, got, precise), got, precise));
+    let mut rounding = on_device
+        .as_ref()
+        .map(|got| with_worst(statistics(metric, got, precise), got, precise));
     let expected = truth.as_ref().unwrap_or(precise);
     let mut verdict = verdict(subject, &rows, on_device.as_ref().unwrap_or(&single), expected);
 
@@ -180,7 +185,11 @@ pub(crate) fn measure(
             check()?;
             let rows: Vec<Json> = points.iter().map(|p| subject.domain.row(p)).collect();
             let (got, wanted) = of.values(subject, &rows)?;
-            Ok(got.iter().zip(&wanted).map(|(got, wanted)| largest(metric, got, wanted).0).collect())
+            Ok(got
+                .iter()
+                .zip(&wanted)
+                .map(|(got, wanted)| largest(metric, got, wanted).0)
+                .collect())
         })?;
         let Some((point, size)) = found else { continue };
         let searched = Searched { subject, device, of };
@@ -258,7 +267,14 @@ fn recipe_text(subject: &Subject) -> String {
     if node.fill.is_empty() && node.freeze.is_empty() {
         return node.module.clone();
     }
-    subject.alternative.recipe.source.text.split_whitespace().collect::<Vec<_>>().join(" ")
+    subject
+        .alternative
+        .recipe
+        .source
+        .text
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// What a search found, on its way into the row.
