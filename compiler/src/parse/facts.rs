@@ -70,6 +70,8 @@ pub struct Facts {
     pub types: Vec<Handle<naga::Type>>,
     /// The same of its expressions.
     pub typed: Vec<(Handle<Expression>, Handle<naga::Type>)>,
+    /// Declared structs whose members it names or composes.
+    pub structs: Vec<Handle<naga::Type>>,
     /// Types that keep all their members where this function stays: those that a `const` or `const_assert` among its statements names,
     /// since these leave no trace in the IR, but stay in the text, and those that constants at module scope are composed of.
     pub in_constants: Vec<Handle<naga::Type>>,
@@ -108,6 +110,7 @@ fn of_function(unit: &Unit, function: &naga::Function, info: &naga::valid::Funct
             globals: Vec::new(),
             types: Vec::new(),
             typed: Vec::new(),
+            structs: Vec::new(),
             in_constants: in_constants(unit, name, &unit.cuts[at]),
         },
     };
@@ -267,6 +270,12 @@ impl Finder<'_> {
         let types = types.chain(function.local_variables.iter().map(|(_, l)| l.ty));
         self.facts.types = types.filter(|&ty| holds_struct(ir, ty)).collect();
         for (handle, expression) in function.expressions.iter() {
+            let named = match *expression {
+                Expression::AccessIndex { base, .. } => struct_type(self.unit, self.info, base),
+                Expression::Compose { ty, .. } => Some(ty).filter(|ty| self.unit.structs.contains_key(ty)),
+                _ => None,
+            };
+            self.facts.structs.extend(named);
             let ty = match *expression {
                 Expression::GlobalVariable(global) => {
                     self.facts.globals.push((handle, global));
@@ -279,6 +288,8 @@ impl Finder<'_> {
                 self.facts.typed.push((handle, ty));
             }
         }
+        self.facts.structs.sort_unstable();
+        self.facts.structs.dedup();
     }
 }
 

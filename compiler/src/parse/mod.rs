@@ -14,6 +14,7 @@ mod mentions;
 mod operands;
 mod pure;
 pub mod scan;
+mod templates;
 mod unit;
 
 pub use branches::{Choice, choice, reachable};
@@ -27,4 +28,5 @@ pub use joined::{Joined, joined};
 pub use lines::whole_lines;
 pub use mentions::Meaning;
 pub use operands::{expression_operands, expression_operands_mut, statement_operands_mut};
+pub use templates::{Template, Templates};
 pub use unit::{StructKey, Unit, chain, check_interface, labelled, parse_unit, parse_whole, readable};

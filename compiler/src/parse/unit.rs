@@ -17,6 +17,7 @@ use super::joined::JoinedNames;
 use super::mentions::{Mention, mentions};
 use super::pure::droppable;
 use super::scan::{Item, Scan};
+use super::templates::Templates;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::upstream::guarded;
 
@@ -64,6 +65,8 @@ pub struct Unit {
     pub words_filter: Filter,
     /// Facts of the functions: by function handle, then by entry point.
     pub facts: Vec<Facts>,
+    /// What has been linked of them: by function handle, then by entry point.
+    pub templates: Vec<Templates>,
     /// Their text, as far as it may go: by function handle, then by entry point.
     pub cuts: Vec<Cuts>,
     /// What each item of the author's file mentions.
@@ -129,6 +132,7 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
         words_filter: Filter::default(),
         interfaces: BTreeSet::new(),
         facts: Vec::new(),
+        templates: Vec::new(),
         cuts: Vec::new(),
         mentions: Vec::new(),
         droppable: Vec::new(),
@@ -155,6 +159,7 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
         .map(|(f, item)| item.map_or_else(Cuts::default, |item| cuts(&unit, f, item)))
         .collect();
     unit.facts = facts(&unit);
+    unit.templates.resize_with(unit.facts.len(), Templates::default);
     unit.mentions = unit.scan.items.iter().map(|item| mentions(&unit, item)).collect();
     unit.droppable = unit.ir.functions.iter().map(|(_, f)| droppable(&unit.ir, f)).collect();
     unit.params = variable(&unit, "params", &Origin::Params);

@@ -162,24 +162,25 @@ impl Planned {
         }
     }
 
+    /// Its number among its unit's functions and, behind them, entry points; none for a combined function.
+    fn index(&self, unit: &Unit) -> Option<usize> {
+        match self.body {
+            Body::Function(handle) => Some(handle.index()),
+            Body::Entry(index) => Some(unit.ir.functions.len() + index),
+            Body::Combined { .. } => None,
+        }
+    }
+
     /// What is known of its body whatever it is linked to; nothing for a combined function.
     pub fn facts<'p>(&self, homes: &'p [Home]) -> Option<&'p Facts> {
         let unit = &homes[self.home].unit;
-        match self.body {
-            Body::Function(handle) => Some(&unit.facts[handle.index()]),
-            Body::Entry(index) => Some(&unit.facts[unit.ir.functions.len() + index]),
-            Body::Combined { .. } => None,
-        }
+        unit.facts.get(self.index(unit)?)
     }
 
     /// The stretches of its text that may go; none for a combined function.
     pub fn cuts<'p>(&self, homes: &'p [Home]) -> Option<&'p Cuts> {
         let unit = &homes[self.home].unit;
-        match self.body {
-            Body::Function(handle) => Some(&unit.cuts[handle.index()]),
-            Body::Entry(index) => Some(&unit.cuts[unit.ir.functions.len() + index]),
-            Body::Combined { .. } => None,
-        }
+        unit.cuts.get(self.index(unit)?)
     }
 
     /// Whether a call stays although nobody reads its result.
