@@ -276,7 +276,7 @@ impl<'p> Writer<'p> {
         let _ = write!(out, "// {file}:{line}");
         for (number, &node) in home.instance.iter().flat_map(|&i| &plan.instances.list[i].nodes).enumerate() {
             out.push_str(if number == 0 { " at " } else { ", " });
-            out.push_str(&plan.tree.nodes[node].path);
+            plan.tree.write_path(node, out);
         }
         out.push('\n');
         for directive in unit.scan.directives() {
@@ -315,7 +315,7 @@ impl<'p> Writer<'p> {
         self.signature_types(planned.home, header);
         let place = plan.homes[planned.home]
             .instance
-            .map_or("", |i| plan.tree.nodes[plan.instances.list[i].node].path.as_str());
+            .map_or_else(String::new, |i| plan.tree.path(plan.instances.list[i].node));
         // Infallible: writing to a string.
         let _ = write!(
             out,

@@ -222,7 +222,7 @@ fn instances(plan: &Plan) -> Vec<Instance> {
                 name: instance.name.clone(),
                 module: node.module.name.clone(),
                 category: node.module.category.clone(),
-                paths: instance.nodes.iter().map(|&n| plan.tree.nodes[n].path.clone()).collect(),
+                paths: instance.nodes.iter().map(|&n| plan.tree.path(n)).collect(),
                 fields: node.module.manifest.instances.clone(),
             }
         })

@@ -23,7 +23,7 @@ pub(crate) fn located(plan: &Plan, module: &Module, error: &WithSpan<ValidationE
             if let Some((file, range)) = span.to_range().and_then(locate) {
                 diagnostic = diagnostic.at(file, range, "used here");
             }
-            let root = &plan.tree.nodes[0].place;
+            let root = plan.tree.place(0);
             return diagnostic
                 .at(&root.file, root.name_span(), "the root of this tree has the stage")
                 .note("the module is valid by itself: it does not fit into this tree")
@@ -33,7 +33,7 @@ pub(crate) fn located(plan: &Plan, module: &Module, error: &WithSpan<ValidationE
     let diagnostic = Diagnostic::new(codes::LINKED_INVALID, readable(&chain(error.as_inner()), module));
     let mut diagnostic = labelled(diagnostic, error, &locate);
     if diagnostic.labels.is_empty() {
-        let root = &plan.tree.nodes[0].place;
+        let root = plan.tree.place(0);
         diagnostic = diagnostic.at(&root.file, root.name_span(), "linking this tree");
     }
     diagnostic
