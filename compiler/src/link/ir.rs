@@ -5,7 +5,7 @@ use naga::proc::Layouter;
 use naga::{Constant, EntryPoint, Expression, GlobalVariable, Handle, Module, Override, ResourceBinding, Span, Type};
 
 use crate::parse::Origin;
-use crate::plan::{Body, GROUPS, Home, Plan};
+use crate::plan::{Body, GROUPS, Home, Plan, declaring};
 
 /// Links a plan to a module that nobody has validated yet.
 pub fn link(plan: &Plan) -> Module {
@@ -277,8 +277,13 @@ impl<'p> Linker<'p> {
 
     /// A module-scope variable other than `params`.
     pub fn global(&mut self, home: usize, handle: Handle<GlobalVariable>) -> Handle<GlobalVariable> {
-        let (home, handle) = crate::plan::declaring(self.plan, home, handle);
         if let Some(done) = self.copied.globals.get(home, handle) {
+            return done;
+        }
+        let named = (home, handle);
+        let (home, handle) = declaring(self.plan, home, handle);
+        if let Some(done) = self.copied.globals.get(home, handle) {
+            self.copied.globals.insert(named.0, named.1, done);
             return done;
         }
         let ir = &self.plan.homes[home].unit.ir;
@@ -299,6 +304,7 @@ impl<'p> Linker<'p> {
         let span = self.span(home, ir.global_variables.get_span(handle));
         let done = self.out.global_variables.append(variable, span);
         self.copied.globals.insert(home, handle, done);
+        self.copied.globals.insert(named.0, named.1, done);
         done
     }
 

@@ -12,7 +12,7 @@ use super::checks;
 use super::compose::{Composed, Interface, Needs, Origin, compose};
 use super::cuts::{Cuts, cuts};
 use super::facts::{Facts, facts};
-use super::filter::{Filter, word_hash};
+use super::filter::word_hash;
 use super::joined::JoinedNames;
 use super::mentions::{Mention, mentions};
 use super::pure::droppable;
@@ -61,8 +61,8 @@ pub struct Unit {
     pub joined: JoinedNames,
     /// Words that linked names must not be: locals, and words of the language that the text uses.
     pub words: HashSet<String>,
-    /// The same, for asking quickly.
-    pub words_filter: Filter,
+    /// Their hashes.
+    pub word_hashes: Vec<u64>,
     /// Facts of the functions: by function handle, then by entry point.
     pub facts: Vec<Facts>,
     /// What has been linked of them: by function handle, then by entry point.
@@ -129,7 +129,7 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
         fixed_structs: HashSet::default(),
         joined: JoinedNames::default(),
         words: HashSet::default(),
-        words_filter: Filter::default(),
+        word_hashes: Vec::new(),
         interfaces: BTreeSet::new(),
         facts: Vec::new(),
         templates: Vec::new(),
@@ -153,7 +153,7 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     unit.fixed_structs = fixed_structs(&unit);
     unit.dependent = dependents(&unit);
     unit.words = words(&unit);
-    unit.words.iter().for_each(|word| unit.words_filter.insert(word_hash(word)));
+    unit.word_hashes = unit.words.iter().map(|word| word_hash(word)).collect();
     unit.interfaces = interfaces(&unit);
     unit.cuts = functions_of(&unit)
         .map(|(f, item)| item.map_or_else(Cuts::default, |item| cuts(&unit, f, item)))

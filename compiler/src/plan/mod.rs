@@ -19,7 +19,7 @@ use crate::manifest::Combine;
 use crate::parse::{Cuts, Facts, Unit};
 use crate::resolve::{Instances, Tree};
 
-pub use bindings::{Block, GROUPS, PlannedGlobal, declaring};
+pub use bindings::{Block, Declared, GROUPS, PlannedGlobal, declaring};
 pub use names::Names;
 pub use reach::{Roots, plan, roomy};
 pub use stores::{is_dead_store, struct_of};
