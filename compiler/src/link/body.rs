@@ -21,12 +21,6 @@ impl Linker<'_> {
         if let Some(result) = &mut function.result {
             result.ty = self.ty(home, result.ty);
         }
-        for (expression, span) in &template.expressions {
-            function.expressions.append(expression.clone(), self.span(home, *span));
-        }
-        for (variable, span) in &template.variables {
-            function.local_variables.append(variable.clone(), self.span(home, *span));
-        }
         for &handle in &template.outward {
             self.outward(planned, &mut function, handle);
         }
@@ -102,10 +96,7 @@ impl Linker<'_> {
 
     /// Patches the statements of a block and of the blocks in it.
     fn statements(&self, planned: &Planned, block: &mut Block) {
-        for (statement, span) in block.span_iter_mut() {
-            if let Some(span) = span {
-                *span = self.span(planned.home, *span);
-            }
+        for statement in block.iter_mut() {
             match statement {
                 Statement::Call { function, .. } => *function = self.callee(planned, *function),
                 Statement::Block(inner) => self.statements(planned, inner),

@@ -141,7 +141,7 @@ impl<'p> Linker<'p> {
         }
     }
 
-    /// A span that also tells the home.
+    /// An item's span that also tells the home.
     pub fn span(&self, home: usize, span: Span) -> Span {
         let base = self.plan.homes[home].base;
         match span.to_range() {

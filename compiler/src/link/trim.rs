@@ -54,14 +54,9 @@ pub(super) fn trim(plan: &Plan, planned: &Planned, source: &Function, alive: Vec
         }
     }
     trimming.out.body = trimming.block(&source.body);
-    let mut function = trimming.out;
-    let expressions = function.expressions.drain().map(|(_, expression, span)| (expression, span)).collect();
-    let variables = function.local_variables.drain().map(|(_, variable, span)| (variable, span)).collect();
     Template {
         alive,
-        function,
-        expressions,
-        variables,
+        function: trimming.out,
         outward: trimming.outward,
     }
 }

@@ -2,23 +2,19 @@
 
 use std::sync::{Arc, Mutex};
 
-use naga::{Expression, Function, Handle, LocalVariable, Span};
+use naga::{Expression, Function, Handle};
 
 use crate::catalog::lock;
 use crate::limits;
 
-/// A function of a unit as it is linked, but for what differs from permutation to permutation: its spans and the handles of
-/// everything outside of it are still the unit's.
+/// A function of a unit as it is linked, but for what differs from permutation to permutation: the handles of everything outside
+/// of it are still the unit's.
 #[derive(Debug)]
 pub struct Template {
     /// What of it is alive, and what of the structs and functions that it names: all that its form depends on.
     pub alive: Vec<bool>,
-    /// The function, without a name, expressions and variables.
+    /// The function, without a name.
     pub function: Function,
-    /// Its expressions with their places.
-    pub expressions: Vec<(Expression, Span)>,
-    /// Its variables.
-    pub variables: Vec<(LocalVariable, Span)>,
     /// Expressions that depend on something outside, in their order; of those that stand for a variable the first.
     pub outward: Vec<Handle<Expression>>,
 }

@@ -25,12 +25,16 @@ pub use reach::{Roots, plan, roomy};
 pub use stores::{is_dead_store, struct_of};
 pub use structs::Structs;
 
+/// Linked spans below this one stand in a function, and count from the start of the text of that function's unit.
+pub const ITEMS: u32 = 1 << 31;
+
 /// A unit in the plan: a module instance, or an interface.
 #[derive(Debug)]
 pub struct Home {
     /// Its parsed text.
     pub unit: Arc<Unit>,
-    /// Added to its spans, so that a span tells the unit.
+    /// Added to the spans of its items, so that a span tells the unit: [`ITEMS`] or more. Spans within functions are as the unit has
+    /// them.
     pub base: u32,
     /// The instance, if it is one.
     pub instance: Option<usize>,
@@ -137,6 +141,21 @@ impl Plan {
     /// The emitted name of an item of a home.
     pub fn name(&self, home: usize, name: &str) -> Option<&str> {
         self.names.get(&self.homes, home, name)
+    }
+
+    /// The home of a linked function.
+    pub fn home_of(&self, function: Handle<naga::Function>) -> Option<usize> {
+        let linked = self.functions.iter().filter(|f| !matches!(f.body, Body::Entry(_)));
+        linked.map(|f| f.home).nth(function.index())
+    }
+
+    /// The home of a linked entry point.
+    pub fn home_of_entry(&self, name: &str, stage: naga::ShaderStage) -> Option<usize> {
+        let is_meant = |f: &&Planned| match f.body {
+            Body::Entry(index) => f.name == name && self.homes[f.home].unit.ir.entry_points[index].stage == stage,
+            _ => false,
+        };
+        self.functions.iter().find(is_meant).map(|f| f.home)
     }
 
     /// The home of a category's interface.

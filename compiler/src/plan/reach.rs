@@ -7,7 +7,7 @@ use std::sync::Arc;
 use naga::Handle;
 use rayon::prelude::*;
 
-use super::{Body, Calls, Home, Names, Plan, Planned, Structs, bindings, live, names};
+use super::{Body, Calls, Home, ITEMS, Names, Plan, Planned, Structs, bindings, live, names};
 use crate::catalog::Catalog;
 use crate::contracts::compute_entry;
 use crate::diagnostics::{Diagnostic, Report, codes};
@@ -185,7 +185,7 @@ impl Reach<'_> {
 
     fn push_home(&mut self, unit: Arc<Unit>, instance: Option<usize>, prefix: String) -> usize {
         let index = self.homes.len();
-        let base = self.homes.last().map_or(1, |h| h.base + h.unit.composed.text.len() as u32 + 1);
+        let base = self.homes.last().map_or(ITEMS, |h| h.base + h.unit.composed.text.len() as u32 + 1);
         let first = self.homes.iter().position(|h| Arc::ptr_eq(&h.unit, &unit)).unwrap_or(index);
         self.homes.push(Home {
             unit,
