@@ -360,11 +360,7 @@ impl<'p> Linker<'p> {
         handle
     }
 
-    pub fn filter(
-        &mut self,
-        home: usize,
-        leaf: Option<Handle<DiagnosticFilterNode>>,
-    ) -> Option<Handle<DiagnosticFilterNode>> {
+    pub fn filter(&mut self, home: usize, leaf: Option<Handle<DiagnosticFilterNode>>) -> Option<Handle<DiagnosticFilterNode>> {
         let leaf = leaf?;
         if let Some(done) = self.copied.filters.get(home, leaf) {
             return Some(done);

@@ -6,6 +6,7 @@ use std::ops::Range;
 use naga::{Block, Expression, Handle, Statement, TypeInner};
 use rustc_hash::FxHashMap as HashMap;
 
+use super::always::Always;
 use super::branches::{Choice, choice, reachable};
 use super::cuts::Cuts;
 use super::lex::{Kind, Token, lex, short_circuits};
@@ -54,6 +55,8 @@ pub struct Facts {
     pub writes_only_own: bool,
     /// Values that its statements need, whatever else is needed.
     pub reads: Vec<Handle<Expression>>,
+    /// All that is read for these, and for its stores that lead through no struct.
+    pub always: Always,
     /// Its stores.
     pub stores: Vec<Store>,
     /// Its calls, in the order of the text.
@@ -102,6 +105,7 @@ fn of_function(unit: &Unit, function: &naga::Function, info: &naga::valid::Funct
             callees: Vec::new(),
             writes_only_own: writes_only_own(&unit.ir, function, &function.body),
             reads: Vec::new(),
+            always: Always::default(),
             stores: Vec::new(),
             calls: Vec::new(),
             call_of: HashMap::default(),
@@ -117,7 +121,9 @@ fn of_function(unit: &Unit, function: &naga::Function, info: &naga::valid::Funct
     finder.block(&function.body);
     finder.actions();
     finder.types();
-    finder.facts
+    let mut facts = finder.facts;
+    facts.always = Always::new(unit, function, info, &facts);
+    facts
 }
 
 struct Finder<'u> {

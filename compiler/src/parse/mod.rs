@@ -1,5 +1,6 @@
 //! WGSL text to parsed units: each module alone, against stubs of what it calls.
 
+mod always;
 mod branches;
 mod capabilities;
 mod checks;

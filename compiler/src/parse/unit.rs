@@ -158,11 +158,11 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     unit.cuts = functions_of(&unit)
         .map(|(f, item)| item.map_or_else(Cuts::default, |item| cuts(&unit, f, item)))
         .collect();
+    unit.params = variable(&unit, "params", &Origin::Params);
     unit.facts = facts(&unit);
     unit.templates.resize_with(unit.facts.len(), Templates::default);
     unit.mentions = unit.scan.items.iter().map(|item| mentions(&unit, item)).collect();
     unit.droppable = unit.ir.functions.iter().map(|(_, f)| droppable(&unit.ir, f)).collect();
-    unit.params = variable(&unit, "params", &Origin::Params);
     unit.instances = variable(&unit, "instances", &Origin::Instances);
     Ok(unit)
 }

@@ -7,7 +7,7 @@ use super::{
     binding_type, entry_point, stages_using, wgsl_type_name,
 };
 use crate::parse::constant_name;
-use crate::plan::{Body, Plan, Declared};
+use crate::plan::{Body, Declared, Plan};
 use crate::validate::Validated;
 
 /// Reflects a pass.

@@ -44,14 +44,7 @@ struct Resolver<'a> {
 }
 
 impl Resolver<'_> {
-    fn node(
-        &mut self,
-        module: Arc<Module>,
-        node: &Node,
-        parent: Option<usize>,
-        standing: Standing,
-        depth: usize,
-    ) -> Result<usize, Report> {
+    fn node(&mut self, module: Arc<Module>, node: &Node, parent: Option<usize>, standing: Standing, depth: usize) -> Result<usize, Report> {
         let index = self.tree.nodes.len();
         let place = |tree: &Tree| match parent {
             Some(parent) => tree.standing_place(parent, standing),
@@ -135,7 +128,11 @@ impl Resolver<'_> {
         }
         let mut filled = Vec::with_capacity(nodes.len());
         for (position, child) in nodes.iter().enumerate() {
-            let standing = Standing { position, many, ..standing };
+            let standing = Standing {
+                position,
+                many,
+                ..standing
+            };
             let at = || self.tree.standing_place(owner, standing);
             let module = self.catalog.module_at(&child.module, Some((&slot.interface, name)), at)?;
             filled.push(self.node(module, child, Some(owner), standing, depth + 1)?);

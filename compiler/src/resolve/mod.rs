@@ -169,7 +169,11 @@ impl Tree {
     /// Where what stands so in a slot was named.
     fn standing_place(&self, parent: usize, standing: Standing) -> Place {
         let filling = self.filling_place(parent, standing);
-        if standing.many { filling.into(Way::Index(standing.position)) } else { filling }
+        if standing.many {
+            filling.into(Way::Index(standing.position))
+        } else {
+            filling
+        }
     }
 
     /// Where the whole filling of a slot stands.

@@ -22,7 +22,11 @@ pub(crate) fn located(plan: &Plan, module: &Module, error: &WithSpan<ValidationE
     };
     if let ValidationError::EntryPoint { stage, name, .. } = error.as_inner() {
         let entry = module.entry_points.iter().find(|e| e.stage == *stage && e.name == *name);
-        let linked = Linked { plan, module, stage: *stage };
+        let linked = Linked {
+            plan,
+            module,
+            stage: *stage,
+        };
         if let Some((what, needed, place)) = entry.and_then(|e| linked.foreign(&e.function, home)) {
             let mut diagnostic = Diagnostic::new(
                 codes::WRONG_STAGE,
