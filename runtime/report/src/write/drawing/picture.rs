@@ -222,6 +222,13 @@ fn legend(drawing: &mut Drawing, picture: &Picture, scale: Option<Scale>) {
                 columns: 1,
                 pixels: vec![colour],
             });
+            // Black is seen on a dark page too.
+            let [right, low] = [x + 12.0, y + 6.0];
+            drawing.marks.push(Mark::Line {
+                points: vec![[x, y - 6.0], [right, y - 6.0], [right, low], [x, low], [x, y - 6.0]],
+                colour: Colour::Axis,
+                width: 1.0,
+            });
             drawing
                 .marks
                 .push(text([x + 18.0, y], meaning, SMALL, Colour::Faint, Anchor::Start));
