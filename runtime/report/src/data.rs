@@ -69,6 +69,8 @@ pub struct Results {
     pub hard: usize,
     /// Seed of the sampling.
     pub seed: u64,
+    /// Whether all rows have one truth: if not, none is better than another.
+    pub comparable: bool,
     /// Label of the row whose time is 1.
     pub baseline: String,
     /// One for each alternative.
@@ -90,7 +92,8 @@ pub struct Row {
     pub rounding: Option<Errors>,
     /// The same with the evaluator's f32, which is the same on every machine.
     pub rounding_cpu: Errors,
-    /// The largest relative error that WGSL's accuracy table allows a driver to make of it, over the configurations; none where a branch hangs on it.
+    /// The error that WGSL's accuracy table allows a driver to make of it, not exceeded by 95 % of the numbers (elsewhere a branch may go either
+    /// way); none where it allows anything.
     pub allowed: Option<f64>,
     /// What happened at hard inputs, and everywhere else.
     pub verdict: Verdict,
@@ -104,6 +107,19 @@ pub struct Row {
     pub dominated: bool,
     /// Slice of the domain through the worst input; none where the domain has one dimension or fewer.
     pub picture: Option<Picture>,
+}
+
+impl Row {
+    /// Error of the result, RMS: of model and of rounding together, which have nothing to do with each other. The evaluator's rounding, so that
+    /// it is the same on every machine.
+    pub fn error(&self) -> f64 {
+        self.model.as_ref().map_or(0.0, |errors| errors.rms).hypot(self.rounding_cpu.rms)
+    }
+
+    /// Whether the formula is another than the truth, by more than what rounding makes of it.
+    pub fn is_approximate(&self) -> bool {
+        self.model.as_ref().is_some_and(|errors| errors.rms > 4.0 * self.rounding_cpu.rms)
+    }
 }
 
 /// Statistics of an error over the configurations, in the experiment's metric.
@@ -220,8 +236,10 @@ pub struct Picture {
 /// Device against evaluator for one function of one module.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
-    /// Module, `category/name`.
+    /// Experiment and label of the row.
     pub module: String,
+    /// Its recipe.
+    pub recipe: String,
     /// Function.
     pub function: String,
     /// Results compared, one for each number.

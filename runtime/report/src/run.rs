@@ -181,7 +181,10 @@ impl Run<'_> {
         let baseline = experiment.declared.baseline.clone();
         let baseline = baseline.or_else(|| rows.first().map(|row| row.label.clone())).unwrap_or_default();
         self.times(&subjects, &mut rows, &baseline)?;
-        mark_dominated(&mut rows);
+        let comparable = matches!(experiment.declared.truth, TruthSource::Closed(_) | TruthSource::Reference(_));
+        if comparable {
+            mark_dominated(&mut rows);
+        }
         self.report.experiments.push(Results {
             name: experiment.name.clone(),
             title: experiment.declared.title.clone(),
@@ -193,6 +196,7 @@ impl Run<'_> {
             configurations: experiment.declared.configurations.min(self.effort.configurations),
             hard,
             seed: experiment.declared.seed,
+            comparable,
             baseline,
             rows,
         });

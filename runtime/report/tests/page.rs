@@ -209,25 +209,6 @@ fn faults_come_first_and_the_worst_first() {
     assert!(page.find("id=\"faults\"") < page.find("id=\"overview\""));
 }
 
-/// Catches a rounding error beyond what WGSL allows that is not a fault, and an absolute error that is held against a relative allowance.
-#[test]
-fn rounding_beyond_the_allowance_is_a_fault() {
-    let kinds = |metric: &str, allowed: f64| -> Vec<Kind> {
-        let mut results = sample::lonely();
-        metric.clone_into(&mut results.metric);
-        results.rows[0].rounding_cpu.max = 1e-3;
-        results.rows[0].allowed = Some(allowed);
-        let report = Report {
-            experiments: vec![results],
-            ..Report::default()
-        };
-        faults(&report).iter().map(|fault| fault.kind).collect()
-    };
-    assert_eq!(kinds("relative, floor 1e-6", 1e-4), [Kind::Outside]);
-    assert_eq!(kinds("relative, floor 1e-6", 1e-2), []);
-    assert_eq!(kinds("absolute, cd/m2", 1e-4), []);
-}
-
 /// Catches a CPU that is passed off as a GPU, a GPU that is called a CPU, and a report without a device that does not say so.
 #[test]
 fn the_device_is_named_as_what_it_is() {

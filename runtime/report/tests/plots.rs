@@ -83,7 +83,7 @@ fn colours_of(svg: &str, row: &str) -> Vec<String> {
 #[test]
 fn points_look_like_what_they_are() {
     let files = files_of(vec![sample::masking()]);
-    let svg = text(&files, "plots/brdf-masking-model.svg");
+    let svg = text(&files, "plots/brdf-masking-error.svg");
     for row in ["smith-separable", "schlick-disney"] {
         assert_eq!(colours_of(&svg, row), [PAPER, DOMINATED], "{row}");
     }
@@ -108,7 +108,7 @@ fn points_look_like_what_they_are() {
 /// Catches a frontier that misses one of its rows or goes through a dominated one.
 #[test]
 fn the_frontier_goes_through_its_rows() {
-    let svg = text(&files_of(vec![sample::masking()]), "plots/brdf-masking-model.svg");
+    let svg = text(&files_of(vec![sample::masking()]), "plots/brdf-masking-error.svg");
     let document = Document::parse(&svg).expect("XML");
     let line = document
         .descendants()
@@ -129,7 +129,7 @@ fn the_frontier_goes_through_its_rows() {
 #[test]
 fn every_row_with_a_number_has_a_point() {
     let files = files_of(vec![sample::hostile(), sample::masking()]);
-    let svg = text(&files, "plots/b-evil-b-x-model.svg");
+    let svg = text(&files, "plots/b-evil-b-x-error.svg");
     let points: Vec<Circle> = circles(&svg).into_iter().filter(|circle| !circle.name.is_empty()).collect();
     let at = |name: &str| points.iter().find(|circle| circle.name.starts_with(name)).map(|circle| circle.at);
     assert_eq!(points.len(), 5, "{points:?}");
@@ -140,7 +140,17 @@ fn every_row_with_a_number_has_a_point() {
     assert!(nothing[0] < tiny[0] && tiny[0] < one[0] && one[0] < infinite[0], "{points:?}");
     assert!(text(&files, "report.html").contains("Not drawn, since an error or a cost is no number: nan."));
     // All zeros stand on one line, below everything.
-    let svg = text(&files, "plots/brdf-masking-model.svg");
+    let rows = vec![
+        sample::row("reference", 400.0, None, 0.0),
+        sample::row("exact", 300.0, Some(0.0), 0.0),
+        sample::row("rough", 30.0, Some(0.1), 1e-6),
+    ];
+    let zeros = Results {
+        name: "zeros".to_owned(),
+        rows,
+        ..sample::masking()
+    };
+    let svg = text(&files_of(vec![zeros]), "plots/zeros-error.svg");
     let low: Vec<String> = circles(&svg)
         .into_iter()
         .filter(|circle| !circle.name.is_empty() && circle.at[1] > 1430.0)
@@ -169,8 +179,8 @@ fn both_forms_show_the_same_dots() {
     };
     sample::decide(&mut results);
     let files = files_of(vec![results]);
-    let svg = circles(&text(&files, "plots/x-model.svg"));
-    let png = picture(&files, "plots/x-model.png");
+    let svg = circles(&text(&files, "plots/x-error.svg"));
+    let png = picture(&files, "plots/x-error.png");
     let mut seen = 0;
     for dot in svg.iter().filter(|circle| circle.radius == 22.0) {
         seen += 1;

@@ -5,6 +5,7 @@ use shadewright_evaluate::Allowed;
 use shadewright_runtime::probe::Evaluated;
 
 use super::number;
+use super::row::recipe_text;
 use super::subject::Subject;
 use crate::data::{Agreement, Worst};
 
@@ -13,6 +14,7 @@ pub(crate) fn agree(subject: &Subject, rows: &[Json], got: &[Vec<f64>], bounds: 
     let names = subject.probe.components();
     let mut agreement = Agreement {
         module: format!("{}: {}", subject.experiment.name, subject.alternative.label),
+        recipe: recipe_text(subject),
         function: subject.experiment.function.clone(),
         ..Agreement::default()
     };

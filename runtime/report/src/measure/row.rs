@@ -25,6 +25,7 @@ use super::verdict::{note, verdict};
 use super::{MeasureError, Of, widened, worst_of};
 use crate::data::{Agreement, Errors, Provenance, Row, Verdict};
 use crate::experiment::Range;
+use crate::write::dominated;
 
 /// How much is done for a row.
 #[derive(Clone, Copy, Debug)]
@@ -262,7 +263,7 @@ pub(crate) fn key(subject: &Subject, rows: &[Json], effort: &Effort, provenance:
 }
 
 /// The recipe as a person would type it: the bare name, or RON.
-fn recipe_text(subject: &Subject) -> String {
+pub(super) fn recipe_text(subject: &Subject) -> String {
     let node = &subject.alternative.recipe.root;
     if node.fill.is_empty() && node.freeze.is_empty() {
         return node.module.clone();
@@ -321,37 +322,26 @@ impl Searched<'_, '_> {
     }
 }
 
-/// The largest error that the rules for floating-point numbers allow; none where they allow anything.
+/// The error that the rules for floating-point numbers allow, not exceeded by 95 % of the numbers; none where they allow anything.
 fn allowed(subject: &Subject, bounds: &Evaluated<Allowed>, precise: &[Vec<f64>]) -> Option<f64> {
-    let mut most = 0.0_f64;
-    for ((values, precise), undecided) in bounds.values.iter().zip(precise).zip(&bounds.undecided) {
-        if *undecided {
-            continue;
-        }
-        for (value, precise) in values.iter().zip(precise) {
-            for end in [value.low(), value.high()] {
-                let size = difference(subject.metric(), end, *precise).abs();
-                if !size.is_finite() {
-                    return None;
-                }
-                most = most.max(size);
-            }
-        }
-    }
-    Some(most)
+    let rows = bounds.values.iter().zip(precise).zip(&bounds.undecided);
+    let mut sizes: Vec<f64> = rows
+        .filter(|(_, undecided)| !**undecided)
+        .flat_map(|((values, precise), _)| values.iter().zip(precise))
+        .map(|(value, precise)| {
+            let size = |end| difference(subject.metric(), end, *precise).abs();
+            size(value.low()).max(size(value.high()))
+        })
+        .collect();
+    sizes.sort_by(f64::total_cmp);
+    let at = (sizes.len() * 95).div_ceil(100).checked_sub(1)?;
+    Some(sizes[at]).filter(|size| size.is_finite())
 }
 
-/// Marks the rows that another one beats: no worse in error and in work, and better in one. The error is that of the result: of model and
-/// rounding together.
+/// Marks the rows that another one beats: no worse in the result's error and in work, and better in one.
 pub(crate) fn mark_dominated(rows: &mut [Row]) {
-    let place = |row: &Row| {
-        let model = row.model.as_ref().map_or(0.0, |e| e.rms);
-        (model.hypot(row.rounding_cpu.rms), row.executed.mean)
-    };
-    let places: Vec<(f64, f64)> = rows.iter().map(place).collect();
-    for (row, own) in rows.iter_mut().zip(&places) {
-        row.dominated = places
-            .iter()
-            .any(|other| other.0 <= own.0 && other.1 <= own.1 && (other.0 < own.0 || other.1 < own.1));
+    let places: Vec<[f64; 2]> = rows.iter().map(|row| [row.executed.mean, row.error()]).collect();
+    for (row, dominated) in rows.iter_mut().zip(dominated(&places)) {
+        row.dominated = dominated;
     }
 }

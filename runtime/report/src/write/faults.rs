@@ -104,12 +104,6 @@ pub fn of_row<'a>(results: &'a Results, row: &'a Row) -> Vec<Fault<'a>> {
             }
         }
     }
-    // A relative error can be held against the allowance, which is one; of the largest of each, so this cannot be a false alarm.
-    let rounding = [row.rounding.as_ref(), Some(&row.rounding_cpu)].into_iter().flatten();
-    let beyond = |errors: &&Errors| results.metric.starts_with("relative") && row.allowed.is_some_and(|allowed| errors.max > allowed);
-    if let Some(errors) = rounding.into_iter().find(beyond) {
-        faults.push(make(Kind::Outside, 0, Some(&errors.worst)));
-    }
     faults.sort_by_key(|fault| fault.kind);
     faults
 }
@@ -123,7 +117,7 @@ fn of_device(one: &Agreement) -> Fault<'_> {
         count: one.outside,
         of: one.results,
         worst: one.worst.as_ref(),
-        command: one.worst.as_ref().and_then(|worst| command(&one.module, &one.function, worst)),
+        command: one.worst.as_ref().and_then(|worst| command(&one.recipe, &one.function, worst)),
     }
 }
 

@@ -254,6 +254,6 @@ fn closest_line(one: &Agreement) -> Option<FaultLine> {
         component: worst.component.clone(),
         got: (!worst.got.is_null()).then(|| value(&worst.got)),
         expected: (!worst.expected.is_null()).then(|| value(&worst.expected)),
-        command: faults::command(&one.module, &one.function, worst),
+        command: faults::command(&one.recipe, &one.function, worst),
     })
 }

@@ -83,11 +83,7 @@ pub fn row(label: &str, cost: f64, model: Option<f64>, rounding: f64) -> Row {
 
 /// Says which rows are dominated, as whoever fills a report does.
 pub fn decide(results: &mut Results) {
-    let places: Vec<[f64; 2]> = results
-        .rows
-        .iter()
-        .map(|row| [row.executed.mean, row.model.as_ref().map_or(0.0, |model| model.rms)])
-        .collect();
+    let places: Vec<[f64; 2]> = results.rows.iter().map(|row| [row.executed.mean, row.error()]).collect();
     for (row, dominated) in results.rows.iter_mut().zip(dominated(&places)) {
         row.dominated = dominated;
     }
@@ -108,6 +104,7 @@ fn experiment(name: &str, title: &str, rows: Vec<Row>) -> Results {
         configurations: 4096,
         hard: 32,
         seed: 7,
+        comparable: true,
         baseline: rows.first().map(|row| row.label.clone()).unwrap_or_default(),
         rows,
     };
@@ -217,6 +214,7 @@ pub fn hostile() -> Results {
 pub fn report() -> Report {
     let agreement = |module: &str, outside: usize| Agreement {
         module: module.to_owned(),
+        recipe: module.to_owned(),
         function: "brdf".to_owned(),
         results: 12_288,
         equal: 12_287,

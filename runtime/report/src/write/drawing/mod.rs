@@ -99,7 +99,7 @@ pub struct Figure {
 pub struct Figures {
     /// Anchor of the experiment in the page: the part of its files' names.
     pub name: String,
-    /// Model error, then rounding error; none where there are fewer than two rows, since one has nothing to be compared with.
+    /// Error of the result, then rounding error; none where there are fewer than two rows, since one has nothing to be compared with.
     pub plots: Vec<Figure>,
     /// What the plots say beneath.
     pub captions: Vec<String>,
@@ -129,7 +129,7 @@ fn of_experiment(results: &Results, name: String, names: &mut Names) -> Result<F
         ..Figures::default()
     };
     if results.rows.len() >= 2 {
-        for (end, plot) in [("model", pareto::of_model(results)), ("rounding", pareto::of_rounding(results))] {
+        for (end, plot) in [("error", pareto::of_result(results)), ("rounding", pareto::of_rounding(results))] {
             let path = format!("plots/{}-{end}", figures.name);
             figures.plots.push(paint::figure(path, &chart::draw(&plot)?)?);
             figures.captions.push(plot.caption());

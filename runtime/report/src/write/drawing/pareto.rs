@@ -33,28 +33,27 @@ pub fn dominated(points: &[[f64; 2]]) -> Vec<bool> {
     points.iter().map(|one| points.iter().any(|other| beats(*other, *one))).collect()
 }
 
-/// Model error, RMS. Which rows are dominated stands in the data. A row that is its own truth has error 0.
-pub fn of_model(results: &Results) -> Plot {
+/// Error of the result, RMS. Which rows are dominated stands in the data.
+pub fn of_result(results: &Results) -> Plot {
     let points = results.rows.iter().map(|row| Point {
-        error: row.model.as_ref().map_or(0.0, |errors| errors.rms),
+        error: row.error(),
         truth: row.model.is_none(),
         ..point(results, row)
     });
     Plot {
-        title: format!("{}: model", results.name),
-        error: format!("model error, RMS, {}", results.metric),
+        title: format!("{}: error", results.name),
+        error: format!("error of the result, RMS, {}", results.metric),
         points: points.collect(),
-        has_frontier: true,
+        has_frontier: results.comparable,
     }
 }
 
-/// The largest rounding error, on the device where there was one, else of the evaluator. Where the rows differ in their model, rounding alone makes
-/// none of them useless: a crude formula may round best. Dominated are then the same rows as in the model's plot, and there is no frontier.
-/// Where they do not, rounding and cost decide.
+/// The largest rounding error, on the device where there was one, else of the evaluator. Where a row approximates, rounding alone makes
+/// none of them useless: a crude formula may round best. Dominated are then the same rows as in the other plot, and there is no frontier.
+/// Where none does, rounding and cost decide.
 pub fn of_rounding(results: &Results) -> Plot {
     let mut points: Vec<Point> = results.rows.iter().map(|row| point(results, row)).collect();
-    let model = |row: &Row| row.model.as_ref().map_or(0.0, |errors| errors.rms);
-    let has_frontier = results.rows.windows(2).all(|pair| model(&pair[0]) == model(&pair[1]));
+    let has_frontier = results.comparable && !results.rows.iter().any(Row::is_approximate);
     if has_frontier {
         let places: Vec<[f64; 2]> = points.iter().map(|point| [point.cost, point.error]).collect();
         for (point, dominated) in points.iter_mut().zip(dominated(&places)) {
@@ -88,7 +87,10 @@ impl Plot {
         let mut text = format!("{} against cost. ", capital(&self.error));
         text += &match self.has_frontier {
             true => format!("{left} of {} on the frontier, {dominated} dominated.", self.points.len()),
-            false => "Grey are those that are dominated in model error and cost.".to_owned(),
+            false if self.points.iter().any(|point| point.dominated) => {
+                "Grey are those that are dominated in the result's error and cost.".to_owned()
+            }
+            false => "No row makes another one useless here.".to_owned(),
         };
         let nowhere: Vec<&str> = self
             .points

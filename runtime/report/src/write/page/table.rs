@@ -211,7 +211,10 @@ pub fn errors(results: &Results) -> Table {
             "Rounding, evaluator",
             &[("RMS", "f32 on the CPU, the same everywhere", false), ("max", "", false)],
         )
-        .group("WGSL", &[("allows", "Largest relative error that a driver may make", false)])
+        .group(
+            "WGSL",
+            &[("allows", "Error that a driver may make, not exceeded by 95 % of the numbers", false)],
+        )
         .group("", &[("verdict", "", true)]);
     let lines = results.rows.iter().map(|row| {
         let model = row.model.as_ref();
