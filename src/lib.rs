@@ -14,11 +14,11 @@
 //! A choice is made by linking another function, never by an `if`: what a shader doesn't need is not in it. No function, type,
 //! binding, interpolant or parameter is there that the entry points don't reach.
 //!
-//! This crate is the facade over five, each of which knows only those before it:
+//! This crate is the facade over five; the compiler and the evaluator know none of the others, the rest those before them:
 //!
 //! - [`compiler`]: declarations and WGSL to a validated module, its reflection and its text. No GPU, no files.
+//! - [`evaluate`]: a validated module on the CPU, in f32, f64, or with all that WGSL allows a driver; and what it costs.
 //! - [`modules`]: the standard library, embedded.
-//! - [`evaluate`]: validated modules computed on the CPU in any number type, and what they cost.
 //! - [`runtime`]: wgpu. Scenes to recipes, pipelines, passes, and an HDR frame in physical units.
 //! - [`report`]: experiments on modules, speed against error.
 //!

@@ -64,15 +64,28 @@ fn largest(catalog: &Catalog, module: &str, roughness: f64, on: On) -> [f64; 2] 
     let probe = Probe::new(catalog, &Recipe::parse("test", module).unwrap(), "distribution").unwrap();
     let table = probe.table(&rows).unwrap();
     let got: Vec<f64> = match on {
-        On::Device => probe.on_gpu(&Pipelines::new(&common::gpu(), None), &common::gpu(), &table).unwrap().concat(),
-        On::Evaluator => probe.on_cpu::<f32>(&table).unwrap().values.concat().into_iter().map(f64::from).collect(),
+        On::Device => probe
+            .on_gpu(&Pipelines::new(&common::gpu(), None), &common::gpu(), &table)
+            .unwrap()
+            .concat(),
+        On::Evaluator => probe
+            .on_cpu::<f32>(&table)
+            .unwrap()
+            .values
+            .concat()
+            .into_iter()
+            .map(f64::from)
+            .collect(),
     };
     let error = |(got, (theta, ..)): (&f64, &(f64, DVec3, DVec3))| {
         let truth = ggx_d(alpha, *theta);
         (got - truth).abs() / truth
     };
     let errors: Vec<f64> = got.iter().zip(&facets).map(error).collect();
-    let mut most: Vec<f64> = errors.chunks(FACETS as usize).map(|of| of.iter().copied().fold(0.0, f64::max)).collect();
+    let mut most: Vec<f64> = errors
+        .chunks(FACETS as usize)
+        .map(|of| of.iter().copied().fold(0.0, f64::max))
+        .collect();
     most.sort_by(f64::total_cmp);
     [most[most.len() / 2], most[most.len() - 1]]
 }
@@ -98,7 +111,9 @@ fn the_errors_of_the_three_forms_are_as_published() {
                 let rewritten = matches!(on, On::Device) && at == 0 && found[0] == found[1];
                 let published = published[if rewritten { 1 } else { at }];
                 if median > 2.0 * published || 2.0 * worst < published {
-                    wrong.push(format!("{name}, roughness {roughness}: {median:e} to {worst:e}, published {published:e}"));
+                    wrong.push(format!(
+                        "{name}, roughness {roughness}: {median:e} to {worst:e}, published {published:e}"
+                    ));
                 }
             }
         }

@@ -28,7 +28,13 @@ fn with(modules: &[(&str, &str)]) -> (tempfile::TempDir, Arc<Overlay>) {
     (folder, Arc::new(overlay))
 }
 
-fn report_on(library: &Arc<Overlay>, categories: &[&str], device: Option<&Gpu>, done: &dyn Done, cancel: &AtomicBool) -> Result<Report, String> {
+fn report_on(
+    library: &Arc<Overlay>,
+    categories: &[&str],
+    device: Option<&Gpu>,
+    done: &dyn Done,
+    cancel: &AtomicBool,
+) -> Result<Report, String> {
     let catalog = Catalog::load(Arc::clone(library) as _).unwrap_or_else(|report| panic!("{report}"));
     let experiments = shadewright::report::experiments(&**library, &catalog).unwrap_or_else(|report| panic!("{report}"));
     let categories: Vec<String> = categories.iter().map(|&c| c.to_owned()).collect();
@@ -44,7 +50,11 @@ fn report_on(library: &Arc<Overlay>, categories: &[&str], device: Option<&Gpu>, 
 }
 
 fn row<'r>(report: &'r Report, label: &str) -> &'r Row {
-    report.experiments[0].rows.iter().find(|row| row.label == label).unwrap_or_else(|| panic!("no row {label}"))
+    report.experiments[0]
+        .rows
+        .iter()
+        .find(|row| row.label == label)
+        .unwrap_or_else(|| panic!("no row {label}"))
 }
 
 /// GGX with a change at the end: `return DISTRIBUTION;` of `d`.
@@ -62,7 +72,11 @@ const MANIFEST: &str = r#"(summary: "planted", uses: ["math"])"#;
 
 /// The experiment on distributions of the standard library, with GGX as the truth of all.
 fn experiment() -> String {
-    let text = Embedded.files().find(|(path, _)| *path == "ndf/ndf.experiment.ron").map(|(_, text)| text).unwrap();
+    let text = Embedded
+        .files()
+        .find(|(path, _)| *path == "ndf/ndf.experiment.ron")
+        .map(|(_, text)| text)
+        .unwrap();
     assert!(text.contains("truth: Own"));
     text.replace("truth: Own", "truth: Closed(\"ndf/ggx\")")
 }
@@ -70,9 +84,9 @@ fn experiment() -> String {
 /// Catches a report that averages a bad corner away, that sees no NaN but on a grid, or that does not see what a module costs.
 #[test]
 fn planted_faults_are_found_and_named() {
-    let corner = ggx("return d * select(1.0, 1.03, s.alpha > 0.5 && h.x > 0.95);");
+    let corner = ggx("return d * select(1.0, 1.03, s.alpha > 0.3 && h.x > 0.8);");
     // 0 / 0 where alpha is 0.01 and the facet lies flat, one of the hard inputs; a factor of one elsewhere.
-    let nan = ggx("let x = abs(s.alpha - 0.01) + abs(h.x) + abs(h.y);\n    return d * (sqrt(x) / sqrt(x));");
+    let nan = ggx("let x = abs(s.alpha - 0.01) + abs(h.x) + abs(h.z - 1.0);\n    return d * (sqrt(x) / sqrt(x));");
     let slow = ggx("var sum = 0.0;\n    for (var i = 0; i < 64; i++) { sum += d * cos(f32(i) * 0.0); }\n    return sum / 64.0;");
     let experiment = experiment();
     let (_folder, library) = with(&[
@@ -89,15 +103,22 @@ fn planted_faults_are_found_and_named() {
 
     let good = row(&report, "ggx");
     let model = |row: &Row| row.model.clone().unwrap();
-    assert!(model(good).searched < 1e-9, "{good:#?}");
-    assert_eq!((good.verdict.nan.count, good.verdict.infinite.count, good.verdict.negative.count), (0, 0, 0));
+    // 1 / pi in 32 bits is off by 4e-8: the constants are the formula's.
+    assert!(model(good).searched < 1e-6, "{good:#?}");
+    assert_eq!(
+        (good.verdict.nan.count, good.verdict.infinite.count, good.verdict.negative.count),
+        (0, 0, 0)
+    );
     assert_eq!(good.verdict.discontinuous.count, 0, "{:#?}", good.verdict);
 
     let bad = row(&report, "corner");
     let worst = model(bad).worst;
     println!("corner: {:.4} at {}", model(bad).searched, worst.input);
     assert!((model(bad).searched - 0.03).abs() < 1e-4, "{bad:#?}");
-    assert!(worst.input["s"]["alpha"].as_f64().unwrap() > 0.5 && worst.input["h"][0].as_f64().unwrap() > 0.95, "{worst:?}");
+    assert!(
+        worst.input["s"]["alpha"].as_f64().unwrap() > 0.3 && worst.input["h"][0].as_f64().unwrap() > 0.8,
+        "{worst:?}"
+    );
     assert!(bad.verdict.discontinuous.count > 0, "{:#?}", bad.verdict);
 
     let nan = row(&report, "nan");
@@ -106,11 +127,17 @@ fn planted_faults_are_found_and_named() {
     assert_eq!(nan.verdict.nan.count, 1);
     assert!((fault.input["s"]["alpha"].as_f64().unwrap() - 0.01).abs() < 1e-8, "{fault:?}");
     assert_eq!(fault.input["h"], serde_json::json!([0.0, 0.0, 1.0]));
-    assert!(model(nan).searched < 1e-9, "the rest is right");
+    assert!(model(nan).searched < 1e-6, "the rest is right");
 
     let slow = row(&report, "slow");
-    let time = slow.time.as_ref().map_or(f64::NAN, |time| time.median / good.time.as_ref().unwrap().median);
-    println!("slow: {} operations against {}, {time:.2} of the time", slow.executed.mean, good.executed.mean);
+    let time = slow
+        .time
+        .as_ref()
+        .map_or(f64::NAN, |time| time.median / good.time.as_ref().unwrap().median);
+    println!(
+        "slow: {} operations against {}, {time:.2} of the time",
+        slow.executed.mean, good.executed.mean
+    );
     assert!(slow.executed.mean > 10.0 * good.executed.mean && slow.executed.trips == 64.0 && slow.dominated && !good.dominated);
     assert!(report.provenance.device.is_empty() || time > 1.5, "{time}");
 }
@@ -125,9 +152,13 @@ fn a_module_that_gets_worse_is_named() {
     let read = Baseline::read("baseline.json", &before.to_json()).unwrap();
     assert!(before.compare(&read).worse.is_empty(), "what is written reads back");
 
-    let manifest = Embedded.files().find(|(path, _)| *path == "ndf/ggx/module.ron").map(|(_, text)| text).unwrap();
+    let manifest = Embedded
+        .files()
+        .find(|(path, _)| *path == "ndf/ggx/module.ron")
+        .map(|(_, text)| text)
+        .unwrap();
     for (change, what) in [
-        ("return d * select(1.0, 1.03, s.alpha > 0.5 && h.x > 0.95);", "largest model error"),
+        ("return d * select(1.0, 1.03, s.alpha > 0.3 && h.x > 0.8);", "largest model error"),
         ("return select(d, -1e-9, d < 1e-8);", "negatives"),
         ("return d * cos(0.0 * s.alpha);", "transcendental"),
         ("return (d + 1e6) - 1e6;", "rounding error (rms)"),
@@ -135,7 +166,10 @@ fn a_module_that_gets_worse_is_named() {
         let text = ggx(change);
         let (_folder, changed) = with(&[("ndf/ggx/module.ron", manifest), ("ndf/ggx/ggx.wgsl", text.as_str())]);
         let comparison = before.compare(&done(&changed));
-        let named = comparison.worse.iter().any(|line| line.starts_with("ndf: ggx: ") && line.contains(what));
+        let named = comparison
+            .worse
+            .iter()
+            .any(|line| line.starts_with("ndf: ggx: ") && line.contains(what));
         assert!(named, "{change}: {comparison:#?}");
         assert!(!done(&changed).compare(&before).better.is_empty(), "{change}");
     }
@@ -150,7 +184,8 @@ fn a_module_that_gets_worse_is_named() {
 #[test]
 fn nothing_is_worse_than_the_baseline() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("spec/baseline.json");
-    let accepted = Baseline::read("spec/baseline.json", &std::fs::read_to_string(path).unwrap()).unwrap_or_else(|report| panic!("{report}"));
+    let accepted =
+        Baseline::read("spec/baseline.json", &std::fs::read_to_string(path).unwrap()).unwrap_or_else(|report| panic!("{report}"));
     let (_folder, library) = with(&[]);
     let now = Baseline::of(&report_on(&library, &[], None, &(), &AtomicBool::new(false)).unwrap());
     assert!(now.rows.len() >= 15, "{}", now.rows.len());
@@ -194,7 +229,11 @@ fn an_interrupted_report_goes_on() {
     let again = report_on(&plain, &["ndf"], None, &kept, &cancel).unwrap();
     assert_eq!((kept.reused.get(), &again), (rows, &first));
 
-    let manifest = Embedded.files().find(|(path, _)| *path == "ndf/ggx/module.ron").map(|(_, text)| text).unwrap();
+    let manifest = Embedded
+        .files()
+        .find(|(path, _)| *path == "ndf/ggx/module.ron")
+        .map(|(_, text)| text)
+        .unwrap();
     let text = ggx("return d * 1.5;");
     let (_folder, changed) = with(&[("ndf/ggx/module.ron", manifest), ("ndf/ggx/ggx.wgsl", text.as_str())]);
     let other = report_on(&changed, &["ndf"], None, &kept, &cancel).unwrap();
@@ -207,14 +246,24 @@ fn every_module_has_a_row_or_a_reason() {
     let (_folder, library) = with(&[("ndf/new/module.ron", MANIFEST), ("ndf/new/new.wgsl", ggx("return d;").as_str())]);
     let report = report_on(&library, &[], None, &(), &AtomicBool::new(false)).unwrap();
     let catalog = Catalog::load(library as _).unwrap_or_else(|report| panic!("{report}"));
-    let rows: Vec<String> = report.experiments.iter().flat_map(|e| e.rows.iter().map(|r| format!("{} {}", e.category, r.recipe))).collect();
+    let rows: Vec<String> = report
+        .experiments
+        .iter()
+        .flat_map(|e| e.rows.iter().map(|r| format!("{} {}", e.category, r.recipe)))
+        .collect();
     // One that is added by a folder has its row.
     assert!(rows.iter().any(|row| row == "ndf ndf/new"), "{rows:#?}");
     for module in catalog.modules() {
         let name = format!("{}/{}", module.category, module.name);
-        let has_row = rows.iter().any(|row| row.starts_with(&format!("{} ", module.category)) && row.contains(&module.name));
+        let has_row = rows
+            .iter()
+            .any(|row| row.starts_with(&format!("{} ", module.category)) && row.contains(&module.name));
         assert!(has_row || report.without.contains_key(&name), "{name}");
     }
     println!("{:#?}", report.without);
-    assert!(report.without.iter().all(|(_, why)| !why.contains("no experiment")), "{:#?}", report.without);
+    assert!(
+        report.without.iter().all(|(_, why)| !why.contains("no experiment")),
+        "{:#?}",
+        report.without
+    );
 }

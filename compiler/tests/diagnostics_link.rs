@@ -425,7 +425,10 @@ fn every_code_is_asserted() {
     sources(&root.join("src"), &mut texts);
     // Of modules written in WESL, which are read there.
     sources(&root.join("../modules/src"), &mut texts);
-    let codes = codes::ALL.iter().map(|(code, _)| *code).filter(|code| !code.starts_with("SW09") && !code.starts_with("SW11"));
+    let codes = codes::ALL
+        .iter()
+        .map(|(code, _)| *code)
+        .filter(|code| !code.starts_with("SW09") && !code.starts_with("SW11"));
     let missing: Vec<&str> = codes.filter(|code| !texts.contains(&format!("\n{HEAD}{code}]: "))).collect();
     assert_eq!(missing, [""; 0], "codes that no test asserts");
 }

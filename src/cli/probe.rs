@@ -1,9 +1,10 @@
-//! `probe`: values of an interface function on the GPU, over a table of inputs.
+//! `probe`: values of an interface function on the GPU or on the CPU, over a table of inputs.
 
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value as Json};
+use shadewright::evaluate::Allowed;
 use shadewright::runtime::gpu::Gpu;
 use shadewright::runtime::gpu::pipeline::Pipelines;
 use shadewright::runtime::probe::Probe;
@@ -28,6 +29,9 @@ pub struct Options {
     /// What may compute it
     #[arg(long, value_enum, default_value_t = Device::Any)]
     device: Device,
+    /// Numbers of the CPU
+    #[arg(long, value_enum)]
+    number: Option<Number>,
 }
 
 /// Devices to choose from.
@@ -37,6 +41,19 @@ enum Device {
     Any,
     /// Hardware only
     Gpu,
+    /// No GPU at all: the program is evaluated
+    Cpu,
+}
+
+/// Number types of the CPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Number {
+    /// As a GPU that rounds correctly has it
+    F32,
+    /// The same formula in double precision
+    F64,
+    /// f32 with the lowest and highest that a conforming driver may give
+    Allowed,
 }
 
 /// # Errors
@@ -45,19 +62,31 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
     if options.recipe == "-" && options.inputs == Path::new("-") {
         return Err(Failure::Usage("recipe and inputs cannot both come from standard input".to_owned()));
     }
+    if options.number.is_some() && options.device != Device::Cpu {
+        return Err(Failure::Usage("--number needs --device cpu: a GPU computes in f32".to_owned()));
+    }
     let recipe = input::recipe(&options.recipe)?;
     let rows = rows(&options.inputs)?;
     // What is wrong with the recipe or the rows is said first, also where there is no GPU.
     let probe = Probe::new(&context.catalog, &recipe, &options.function)?;
     let table = probe.table(&rows)?;
-    let gpu = Gpu::headless()?;
-    if options.device == Device::Gpu && gpu.is_software() {
-        return Err(Failure::NoGpu(format!(
-            "there is no hardware GPU, only {}; `--device any` takes it",
-            gpu.name()
-        )));
-    }
-    let results = probe.answer(&Pipelines::new(&gpu, None), &gpu, &table)?;
+    let results = match options.device {
+        Device::Cpu => match options.number.unwrap_or(Number::F32) {
+            Number::F32 => probe.answer_on_cpu::<f32>(&table)?,
+            Number::F64 => probe.answer_on_cpu::<f64>(&table)?,
+            Number::Allowed => probe.answer_on_cpu::<Allowed>(&table)?,
+        },
+        Device::Any | Device::Gpu => {
+            let gpu = Gpu::headless()?;
+            if options.device == Device::Gpu && gpu.is_software() {
+                return Err(Failure::NoGpu(format!(
+                    "there is no hardware GPU, only {}; `--device any` takes it",
+                    gpu.name()
+                )));
+            }
+            probe.answer(&Pipelines::new(&gpu, None), &gpu, &table)?
+        }
+    };
     let mut outputs = Outputs::default();
     let output = options.output.as_deref().unwrap_or(Path::new("-"));
     outputs.stage(output, format!("{}\n", json(&results)?).as_bytes())?;

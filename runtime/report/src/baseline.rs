@@ -170,5 +170,7 @@ impl Line {
 fn named(cost: &Cost) -> Vec<(String, f64)> {
     let json = serde_json::to_value(cost).unwrap_or_default();
     let fields = json.as_object().into_iter().flatten();
-    fields.map(|(name, count)| (name.clone(), count.as_f64().unwrap_or(f64::NAN))).collect()
+    fields
+        .map(|(name, count)| (name.clone(), count.as_f64().unwrap_or(f64::NAN)))
+        .collect()
 }

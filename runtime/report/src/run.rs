@@ -86,7 +86,10 @@ pub fn run(catalog: &Catalog, experiments: &[Experiment], options: &Options) -> 
         }
     }
     let pipelines = options.device.map(|gpu| Pipelines::new(gpu, None));
-    let device = options.device.zip(pipelines.as_ref()).map(|(gpu, pipelines)| OnDevice { gpu, pipelines });
+    let device = options
+        .device
+        .zip(pipelines.as_ref())
+        .map(|(gpu, pipelines)| OnDevice { gpu, pipelines });
     let steps = chosen.iter().map(|e| e.alternatives.len() + 1).sum();
     let mut run = Run {
         catalog,
@@ -200,7 +203,11 @@ impl Run<'_> {
     fn row(&self, subject: &Subject) -> Result<(Measured, usize), MeasureError> {
         let (rows, hard) = configurations(subject, &self.effort);
         let key = key(subject, &rows, &self.effort, &self.report.provenance)?;
-        let kept = self.options.done.get(&key).and_then(|text| serde_json::from_str::<Measured>(&text).ok());
+        let kept = self
+            .options
+            .done
+            .get(&key)
+            .and_then(|text| serde_json::from_str::<Measured>(&text).ok());
         if let Some(measured) = kept {
             return Ok((measured, hard));
         }
@@ -230,7 +237,9 @@ impl Run<'_> {
         let Some(times) = time(device.pipelines, device.gpu, &alternatives, REPETITIONS, self.options.cancel)? else {
             return Ok(());
         };
-        let Some(base) = rows.iter().position(|row| row.label == baseline) else { return Ok(()) };
+        let Some(base) = rows.iter().position(|row| row.label == baseline) else {
+            return Ok(());
+        };
         for (row, own) in rows.iter_mut().zip(&times) {
             let ratios = own.iter().zip(&times[base]).map(|(own, base)| own / base);
             row.time = spread(ratios.collect(), own.clone());
@@ -242,7 +251,11 @@ impl Run<'_> {
     fn others(&mut self, experiments: &[Experiment]) {
         for module in self.catalog.modules() {
             let name = format!("{}/{}", module.category, module.name);
-            let is_in = |e: &Experiment| e.alternatives.iter().any(|a| a.root.category == module.category && a.root.name == module.name);
+            let is_in = |e: &Experiment| {
+                e.alternatives
+                    .iter()
+                    .any(|a| a.root.category == module.category && a.root.name == module.name)
+            };
             if experiments.iter().any(is_in) {
                 continue;
             }

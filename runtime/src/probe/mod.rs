@@ -14,6 +14,8 @@ mod numbers;
 mod table;
 mod time;
 
+use std::sync::OnceLock;
+
 use naga::Expression;
 use serde_json::{Value as Json, json};
 use shadewright_compiler::catalog::Catalog;
@@ -21,6 +23,7 @@ use shadewright_compiler::manifest::ResourceKind;
 use shadewright_compiler::program::{Program, Recipe};
 use shadewright_compiler::reflect::{Binding, BindingType, Fill, Layout};
 use shadewright_evaluate::cost::{Analysis, cost_of_function};
+use shadewright_evaluate::{EvaluateError, Program as Evaluator};
 
 use crate::gpu::pack::unpack;
 use crate::gpu::pipeline::Pipelines;
@@ -28,7 +31,7 @@ use crate::gpu::{Gpu, GpuError, RuntimeError};
 use numbers::{Number, numbers};
 use table::Names;
 
-pub use cpu::Evaluated;
+pub use cpu::{Evaluated, Written};
 pub use table::{Batch, Table};
 pub use time::time;
 
@@ -48,6 +51,8 @@ pub struct Probe {
     result: Layout,
     /// The result's numbers.
     numbers: Vec<Number>,
+    /// The program for the CPU, without pipeline constants.
+    evaluator: OnceLock<Result<Evaluator, EvaluateError>>,
 }
 
 impl Probe {
@@ -73,6 +78,7 @@ impl Probe {
             result,
             names,
             program,
+            evaluator: OnceLock::new(),
         })
     }
 

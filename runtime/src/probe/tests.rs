@@ -340,3 +340,63 @@ fn frozen_ends_of_loops_are_seen() {
     assert_eq!(cost("\"sum\""), (None, 1, 1));
     assert_eq!(cost("(module: \"sum\", freeze: {\"terms\": 11})"), (Some(12), 1, 0));
 }
+
+/// Catches rows in another order than the GPU's, parameters, pipeline constants and instances that do not reach the CPU, numbers that are
+/// not those of [`Probe::components`], and operations of the table that are counted.
+#[test]
+fn the_cpu_computes_what_the_gpu_does() {
+    let catalog = catalog(&[
+        ("tested/category.ron", CATEGORY),
+        ("tested/interface.wgsl", INTERFACE),
+        ("tested/lamp/module.ron", MANIFEST),
+        ("tested/lamp/lamp.wgsl", SOURCE),
+    ]);
+    let recipe = Recipe::parse("test", "\"lamp\"").unwrap();
+    let probe = Probe::new(&catalog, &recipe, "eval").unwrap();
+    let rows: Vec<Json> = (0..300)
+        .map(|i| match i % 3 {
+            0 => json!({"s": {"n": [2, 4, i]}, "v": [0, 0, 1], "k": i}),
+            1 => json!({"s": {"n": [2, 4, 8], "alpha": 1}, "v": [1, i, 4], "k": 3, "params": {"scale": 2}}),
+            _ => json!({"v": [1, 2, 0], "k": i, "instances": [{"power": 1}, {"power": i}], "params": {"gain": -2}}),
+        })
+        .collect();
+    let table = probe.table(&rows).unwrap();
+    let gpu = gpu();
+    let device = probe.on_gpu(&Pipelines::new(&gpu, None), &gpu, &table).unwrap();
+    let single = probe.on_cpu::<f32>(&table).unwrap();
+    let double = probe.on_cpu::<f64>(&table).unwrap();
+    for (row, numbers) in device.iter().enumerate() {
+        let wide: Vec<f64> = single.values[row].iter().map(|x| f64::from(*x)).collect();
+        assert_eq!((&wide, &double.values[row]), (numbers, numbers), "row {row}");
+    }
+    assert_eq!(probe.components(), ["x", "y", "z"]);
+    assert_eq!(
+        probe.answer_on_cpu::<f32>(&table).unwrap()["results"],
+        probe.answer(&Pipelines::new(&gpu, None), &gpu, &table).unwrap()["results"]
+    );
+    // One trip for each instance; nothing of the probe's own comparison and branch.
+    let trips = [0, 1, 2].map(|row| single.executed[row][shadewright_evaluate::Kind::Trip]);
+    assert_eq!(trips, [1, 1, 2]);
+    assert_eq!(single.executed[0], double.executed[0]);
+}
+
+/// Catches results that depend on the number of threads.
+#[test]
+fn the_cpus_results_are_the_same_on_any_number_of_threads() {
+    let catalog = catalog(&[
+        ("tested/category.ron", "(summary: \"tested\", order: 1, group: 3)"),
+        ("tested/interface.wgsl", "fn eval(x: f32) -> f32 { return x; }"),
+        ("tested/wave/module.ron", "(summary: \"tested\")"),
+        ("tested/wave/wave.wgsl", "fn eval(x: f32) -> f32 { return sin(x) / (x + 0.1); }"),
+    ]);
+    let probe = Probe::new(&catalog, &Recipe::parse("test", "\"wave\"").unwrap(), "eval").unwrap();
+    let table = probe
+        .table(&(0..1000).map(|i| json!({"x": f64::from(i) * 0.003})).collect::<Vec<_>>())
+        .unwrap();
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| probe.on_cpu::<shadewright_evaluate::Allowed>(&table).unwrap())
+    };
+    assert_eq!(on(1), on(7));
+    assert_eq!(on(1).values.len(), 1000);
+}

@@ -104,7 +104,7 @@ impl<N: Number> Machine<'_, N> {
     }
 
     /// Decodes a buffer by the layout of its type.
-    pub(super) fn fill(&mut self, index: usize, bytes: &[u8]) -> Result<(), EvaluateError> {
+    pub(crate) fn fill(&mut self, index: usize, bytes: &[u8]) -> Result<(), EvaluateError> {
         let bound = &self.program.bound[index];
         let Resource::Buffer(tree) = &bound.resource else {
             return Err(other(bound, "buffer"));

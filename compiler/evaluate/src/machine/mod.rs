@@ -111,13 +111,13 @@ impl<'p, N: Number> Machine<'p, N> {
         for (index, bound) in program.bound.iter().enumerate() {
             let mut texture = None;
             match &bound.resource {
-                Resource::Buffer(tree) => machine.fill(index, &vec![0; usize::try_from(tree.bytes()).unwrap_or(0)])?,
+                Resource::Buffer(tree) => N::fill(&mut machine, index, &vec![0; usize::try_from(tree.bytes()).unwrap_or(0)])?,
                 Resource::Texture { is_depth, white, layers } => texture = Some(Arc::new(Texture::stand_in(*is_depth, *white, *layers))),
                 Resource::Sampler => {}
             }
             machine.textures.push(texture);
         }
-        machine.execute(program.constants)?;
+        N::execute(&mut machine, program.constants)?;
         Ok(machine)
     }
 
@@ -133,7 +133,7 @@ impl<'p, N: Number> Machine<'p, N> {
     /// There is no such binding, it is no buffer, or the bytes are fewer than its type takes.
     pub fn bind_buffer(&mut self, group: u32, binding: u32, bytes: &[u8]) -> Result<(), EvaluateError> {
         let (index, _) = self.bound(group, binding)?;
-        self.fill(index, bytes)
+        N::fill(self, index, bytes)
     }
 
     /// Binds a texture.
@@ -206,7 +206,7 @@ impl<'p, N: Number> Machine<'p, N> {
                 self.memory[input.at as usize + i] = input_slot(*leaf, number);
             }
         }
-        self.execute(program.entry)
+        N::execute(self, program.entry)
     }
 
     /// Whether the last run hung on a comparison that another conforming driver may answer otherwise: then its results say nothing

@@ -14,7 +14,7 @@ const COPIES: u32 = 16;
 
 impl<N: Number> Machine<'_, N> {
     /// Runs code from an instruction to the return that nobody called for.
-    pub(super) fn execute(&mut self, start: u32) -> Result<(), EvaluateError> {
+    pub(crate) fn execute(&mut self, start: u32) -> Result<(), EvaluateError> {
         let program = self.program;
         self.calls.clear();
         self.steps = program.limits.steps;

@@ -65,9 +65,10 @@ impl Allowed {
         self.low <= x && x <= self.high
     }
 
-    /// Whether all of it is subnormal or zero.
-    pub(super) fn is_tiny(self) -> bool {
-        -TINY < self.low && self.high < TINY
+    /// The part of it that is subnormal, with the zero that it may be flushed to; none of what is zero only.
+    pub(super) fn subnormals(self) -> Option<Span> {
+        let (low, high) = (self.low.max(-TINY), self.high.min(TINY));
+        (low <= high && (low, high) != (0.0, 0.0)).then_some((low, high))
     }
 
     /// Bounds that are f32 already: overflow leaves everything open, and what is subnormal may be flushed to zero.
@@ -91,6 +92,10 @@ impl Allowed {
 
     /// An f32 between these bounds, which are wider than a unit in the last place.
     pub(super) fn within(value: f32, (low, high): Span) -> Self {
+        // Rounding inward would hide an overflow.
+        if !(-HUGE <= low && high <= HUGE) {
+            return Self::any(value);
+        }
         let inner = (up(low), down(high));
         if inner.0 > inner.1 {
             return Self::rounded(value, (low, high));
@@ -109,7 +114,10 @@ impl Allowed {
 
     /// A function that rises with x, with its error in units in the last place.
     pub(super) fn rises(self, value: f32, function: impl Fn(f64) -> f64, ulps: impl Fn(f64) -> f64) -> Self {
-        Self::within(value, rising(self.span(), function, |x, y| ulps(x) * ulp(y)))
+        let error = |x: f64| ulps(x) * ulp(function(x));
+        // Of e^x far below 0 the error grows with |x|, and e^x does not shrink any more: the upper end has the larger of both.
+        let (low, high) = (error(self.low), error(self.low).max(error(self.high)));
+        Self::within(value, (widen(function(self.low), -low), widen(function(self.high), high)))
     }
 
     /// A whole number that the bounds agree on, or not.

@@ -6,6 +6,8 @@ use super::allowance::{Span, TINY, corners, down, sum, ulp, up, widen};
 use super::allowed::Allowed;
 use super::float::{MOST_I32, MOST_U32};
 use super::{Number, Truth, Whole};
+use crate::error::EvaluateError;
+use crate::machine::Machine;
 
 /// Where a cosine or sine has its peaks in [-pi, pi].
 const SINE: [(f64, f64); 2] = [(-std::f64::consts::FRAC_PI_2, -1.0), (std::f64::consts::FRAC_PI_2, 1.0)];
@@ -240,11 +242,11 @@ impl Number for Allowed {
     fn min(self, y: Self) -> Self {
         let value = Number::min(self.value, y.value);
         both(value, self, y, |a, b| {
-            let span = if self.is_tiny() && y.is_tiny() {
-                (a.0.min(b.0), a.1.max(b.1))
-            } else {
-                (a.0.min(b.0), a.1.min(b.1))
-            };
+            // Of two subnormals it may be either.
+            let mut span = (a.0.min(b.0), a.1.min(b.1));
+            if let (Some(x), Some(y)) = (self.subnormals(), y.subnormals()) {
+                span = (span.0.min(x.0).min(y.0), span.1.max(x.1).max(y.1));
+            }
             Self::of(value, span)
         })
     }
@@ -466,6 +468,12 @@ impl Number for Allowed {
             return Self::from_f32(x);
         }
         Self::within(x, (widen(wide, -3.0 * ulp(wide)), widen(wide, 3.0 * ulp(wide))))
+    }
+    fn execute(machine: &mut Machine<'_, Self>, start: u32) -> Result<(), EvaluateError> {
+        machine.execute(start)
+    }
+    fn fill(machine: &mut Machine<'_, Self>, index: usize, bytes: &[u8]) -> Result<(), EvaluateError> {
+        machine.fill(index, bytes)
     }
     #[allow(clippy::cast_possible_truncation)] // a texel is an f32
     fn filtered(value: f64, low: f64, high: f64) -> Self {

@@ -4,6 +4,8 @@
 use half::f16;
 
 use super::{Number, Truth, Whole};
+use crate::error::EvaluateError;
+use crate::machine::Machine;
 
 /// Largest f32 that an i32 holds.
 pub(super) const MOST_I32: f32 = 2_147_483_520.0;
@@ -218,6 +220,12 @@ macro_rules! number {
             #[inline]
             fn unpacked(x: f32) -> Self {
                 x as Self
+            }
+            fn execute(machine: &mut Machine<'_, Self>, start: u32) -> Result<(), EvaluateError> {
+                machine.execute(start)
+            }
+            fn fill(machine: &mut Machine<'_, Self>, index: usize, bytes: &[u8]) -> Result<(), EvaluateError> {
+                machine.fill(index, bytes)
             }
             #[inline]
             fn filtered(value: f64, _low: f64, _high: f64) -> Self {

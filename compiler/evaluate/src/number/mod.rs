@@ -9,6 +9,9 @@ use std::fmt::Debug;
 
 pub use allowed::Allowed;
 
+use crate::error::EvaluateError;
+use crate::machine::Machine;
+
 /// What a comparison says. Not sure where another conforming driver may say the opposite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Truth {
@@ -209,6 +212,18 @@ pub trait Number: Copy + Debug + PartialEq + Send + Sync + 'static {
     fn mix(self, y: Self, z: Self) -> Self;
     /// A value read from a normalised integer: within 3 ULP.
     fn unpacked(x: f32) -> Self;
+    /// Runs a machine's code. It is compiled here for each type, optimised as this package is, whoever calls it.
+    ///
+    /// # Errors
+    /// As for [`Machine::run`].
+    #[doc(hidden)]
+    fn execute(machine: &mut Machine<'_, Self>, start: u32) -> Result<(), EvaluateError>;
+    /// Decodes a buffer, like [`Number::execute`].
+    ///
+    /// # Errors
+    /// As for [`Machine::bind_buffer`].
+    #[doc(hidden)]
+    fn fill(machine: &mut Machine<'_, Self>, index: usize, bytes: &[u8]) -> Result<(), EvaluateError>;
     /// A texture's value that is made of these texels; the first is what a nearest or exactly weighted read gives.
     fn filtered(value: f64, low: f64, high: f64) -> Self;
 }

@@ -62,7 +62,11 @@ impl Checker<'_> {
             None => {
                 let known: Vec<_> = self.functions.keys().map(|name| format!("`{name}`")).collect();
                 let message = format!("`{}` has {} functions; say which", self.category, known.len());
-                let label = if known.is_empty() { "nothing to call".to_owned() } else { format!("`function` is one of {}", known.join(", ")) };
+                let label = if known.is_empty() {
+                    "nothing to call".to_owned()
+                } else {
+                    format!("`function` is one of {}", known.join(", "))
+                };
                 self.error(index, &[], code, message, label);
                 None
             }
@@ -75,7 +79,13 @@ impl Checker<'_> {
             let is_drawn = declared.inputs.keys().any(|path| is_part(path, name));
             if !is_drawn && !signature.structs.contains_key(ty) {
                 let message = format!("the argument `{name}` of type {ty} is not among the inputs");
-                self.error(index, &[Step::Key("inputs")], codes::EXPERIMENT_INVALID, message, "it has no default");
+                self.error(
+                    index,
+                    &[Step::Key("inputs")],
+                    codes::EXPERIMENT_INVALID,
+                    message,
+                    "it has no default",
+                );
             }
         }
     }
@@ -172,7 +182,11 @@ fn sound(range: &Range, before: &[&str]) -> Result<(), String> {
         if lo < hi { Ok(()) } else { Err(format!("{lo} is not below {hi}")) }
     };
     let known = |name: &str| {
-        if before.contains(&name) { Ok(()) } else { Err(format!("`{name}` is not drawn before it")) }
+        if before.contains(&name) {
+            Ok(())
+        } else {
+            Err(format!("`{name}` is not drawn before it"))
+        }
     };
     let all = |ranges: &[Range]| {
         if ranges.is_empty() {

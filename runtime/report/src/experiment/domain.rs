@@ -34,7 +34,9 @@ impl Domain {
         let inputs: Vec<_> = inputs.iter().map(|(name, range)| (name.clone(), range.clone())).collect();
         let inputs_end = inputs.iter().map(|(_, range)| coordinates(range)).sum();
         let is_free = |name: &str, param: &Param| {
-            param.mode != ParamMode::Constant && !frozen.contains_key(name) && !inputs.iter().any(|(path, _)| path == &format!("params.{name}"))
+            param.mode != ParamMode::Constant
+                && !frozen.contains_key(name)
+                && !inputs.iter().any(|(path, _)| path == &format!("params.{name}"))
         };
         let params: Vec<_> = params
             .into_iter()
@@ -136,7 +138,11 @@ pub fn coordinates(range: &Range) -> usize {
 
 fn name_axes(name: &str, range: &Range, smooth: bool, axes: &mut Vec<Axis>) {
     let mut axis = |what: &str, is_smooth: bool, ends: Option<(f64, f64, bool)>| {
-        let name = if what.is_empty() { name.to_owned() } else { format!("{name} ({what})") };
+        let name = if what.is_empty() {
+            name.to_owned()
+        } else {
+            format!("{name} ({what})")
+        };
         axes.push(Axis {
             name,
             is_smooth: is_smooth && smooth,

@@ -82,7 +82,11 @@ mod tests {
     #[test]
     fn what_is_not_finite_is_left_to_the_verdict() {
         let metric = Metric::Absolute { unit: String::new() };
-        let (errors, worst) = statistics(&metric, &[vec![f64::NAN, 1.5], vec![f64::INFINITY, 1.0]], &[vec![1.0, 1.0], vec![1.0, 1.0]]);
+        let (errors, worst) = statistics(
+            &metric,
+            &[vec![f64::NAN, 1.5], vec![f64::INFINITY, 1.0]],
+            &[vec![1.0, 1.0], vec![1.0, 1.0]],
+        );
         assert_eq!((errors.max, errors.bias, worst), (0.5, 0.25, Some(0)));
         assert_eq!(largest(&metric, &[1.0, f64::NAN], &[0.0, 0.0]), (f64::INFINITY, 1));
         assert_eq!(statistics(&metric, &[vec![f64::NAN]], &[vec![0.0]]), (Errors::default(), None));

@@ -2,6 +2,7 @@
 
 use serde_json::Value as Json;
 
+use super::errors::difference;
 use super::sample::Random;
 use super::subject::Subject;
 use super::{MeasureError, worst_of};
@@ -13,14 +14,17 @@ const JUMP: f64 = 0.01;
 /// Halvings of a segment: what is left of it is below the spacing of 32-bit numbers.
 const HALVINGS: u32 = 28;
 
-/// Two points of the cube that differ in one coordinate, and what the formula gives there.
-struct Segment {
-    ends: [Vec<f64>; 2],
-    values: [Vec<f64>; 2],
+/// A point of the cube, what the formula gives there, and how far that is from the truth.
+#[derive(Clone)]
+struct End {
+    point: Vec<f64>,
+    value: Vec<f64>,
+    truth: Vec<f64>,
 }
 
-/// Looks for jumps along segments from some points, each in one coordinate. Halves each segment, keeping the half in which the formula changes
-/// more, until nothing is between its ends; then compares its change with that of the truth.
+/// Looks for jumps along segments from some points, each in one coordinate. Halves each segment, keeping the half in which the formula's error
+/// changes more, until nothing is between its ends; then compares the formula's change with that of the truth. Of a formula that is right nearly
+/// everywhere the error is flat but where it jumps, however steep the formula itself is.
 ///
 /// Both are in double precision: what rounding makes is no jump.
 pub(crate) fn jumps(subject: &Subject, points: &[Vec<f64>], random: &mut Random) -> Result<Fault, MeasureError> {
@@ -34,34 +38,38 @@ pub(crate) fn jumps(subject: &Subject, points: &[Vec<f64>], random: &mut Random)
         end[smooth[random.below(smooth.len())]] = random.unit();
         end
     };
-    let ends: Vec<Vec<f64>> = points.iter().map(far).collect();
-    let formula = |points: &[Vec<f64>]| {
-        let rows: Vec<Json> = points.iter().map(|p| subject.domain.row(p)).collect();
-        subject.formula::<f64>(&rows).map(|done| done.values)
-    };
-    let values = formula(points)?.into_iter().zip(formula(&ends)?);
-    let mut segments: Vec<Segment> = points
-        .iter()
-        .zip(&ends)
-        .zip(values)
-        .map(|((a, b), (at_a, at_b))| Segment {
-            ends: [a.clone(), b.clone()],
-            values: [at_a, at_b],
-        })
-        .collect();
+    let others: Vec<Vec<f64>> = points.iter().map(far).collect();
+    let starts = ends(subject, points.to_vec())?;
+    let mut segments: Vec<[End; 2]> = starts.into_iter().zip(ends(subject, others)?).map(|(a, b)| [a, b]).collect();
     for _ in 0..HALVINGS {
-        let middles: Vec<Vec<f64>> = segments.iter().map(|s| middle(&s.ends)).collect();
-        for ((segment, at), value) in segments.iter_mut().zip(&middles).zip(formula(&middles)?) {
-            let replaced = usize::from(change(subject, &segment.values[0], &value) >= change(subject, &value, &segment.values[1]));
-            segment.ends[replaced].clone_from(at);
-            segment.values[replaced] = value;
+        let middles = ends(subject, segments.iter().map(middle).collect())?;
+        for (segment, middle) in segments.iter_mut().zip(middles) {
+            let replaced = usize::from(drift(subject, &segment[0], &middle) >= drift(subject, &middle, &segment[1]));
+            segment[replaced] = middle;
         }
     }
-    count(subject, &segments)
+    Ok(count(subject, &segments))
 }
 
-fn middle(ends: &[Vec<f64>; 2]) -> Vec<f64> {
-    ends[0].iter().zip(&ends[1]).map(|(a, b)| (a + b) / 2.0).collect()
+fn ends(subject: &Subject, points: Vec<Vec<f64>>) -> Result<Vec<End>, MeasureError> {
+    let rows: Vec<Json> = points.iter().map(|p| subject.domain.row(p)).collect();
+    let values = subject.formula::<f64>(&rows)?.values;
+    let truths = subject.truth(&rows)?.unwrap_or_else(|| values.clone());
+    let end = |((point, value), truth)| End { point, value, truth };
+    Ok(points.into_iter().zip(values).zip(truths).map(end).collect())
+}
+
+fn middle(ends: &[End; 2]) -> Vec<f64> {
+    ends[0].point.iter().zip(&ends[1].point).map(|(a, b)| (a + b) / 2.0).collect()
+}
+
+/// How much the error changes from one end to the other.
+fn drift(subject: &Subject, a: &End, b: &End) -> f64 {
+    let error = |end: &End| -> Vec<f64> {
+        let pairs = end.value.iter().zip(&end.truth);
+        pairs.map(|(value, truth)| difference(subject.metric(), *value, *truth)).collect()
+    };
+    error(a).iter().zip(error(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 /// Largest difference of two results' numbers, as a share of the larger one where the metric is relative: neither of them is the truth.
@@ -73,24 +81,31 @@ fn change(subject: &Subject, a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(size).fold(0.0, f64::max)
 }
 
-fn count(subject: &Subject, segments: &[Segment]) -> Result<Fault, MeasureError> {
+fn count(subject: &Subject, segments: &[[End; 2]]) -> Fault {
     let mut fault = Fault::default();
     let mut most = 0.0;
-    for segment in segments {
-        let jump = change(subject, &segment.values[1], &segment.values[0]);
-        if jump.is_nan() || jump < JUMP {
-            continue;
-        }
-        let rows: Vec<Json> = segment.ends.iter().map(|p| subject.domain.row(p)).collect();
-        let Some(truth) = subject.truth(&rows)? else { continue };
-        let excess = jump - change(subject, &truth[1], &truth[0]);
+    for [a, b] in segments {
+        let excess = change(subject, &b.value, &a.value) - change(subject, &b.truth, &a.truth);
         if excess > JUMP {
             fault.count += 1;
             if excess > most {
                 most = excess;
-                fault.worst = Some(worst_of(subject, &rows[1], &segment.values[1], &truth[1]));
+                // The end that is further from the truth.
+                let end = if drift(subject, &at_truth(b), b) >= drift(subject, &at_truth(a), a) {
+                    b
+                } else {
+                    a
+                };
+                fault.worst = Some(worst_of(subject, &subject.domain.row(&end.point), &end.value, &end.truth));
             }
         }
     }
-    Ok(fault)
+    fault
+}
+
+fn at_truth(end: &End) -> End {
+    End {
+        value: end.truth.clone(),
+        ..end.clone()
+    }
 }

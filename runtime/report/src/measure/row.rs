@@ -128,13 +128,14 @@ pub(crate) struct OnDevice<'a> {
 }
 
 /// Measures an alternative: everything but its time.
-pub(crate) fn measure(
-    subject: &Subject,
-    device: Option<OnDevice>,
-    effort: &Effort,
-    cancel: &AtomicBool,
-) -> Result<Measured, MeasureError> {
-    let check = || if cancel.load(Ordering::Relaxed) { Err(MeasureError::Interrupted) } else { Ok(()) };
+pub(crate) fn measure(subject: &Subject, device: Option<OnDevice>, effort: &Effort, cancel: &AtomicBool) -> Result<Measured, MeasureError> {
+    let check = || {
+        if cancel.load(Ordering::Relaxed) {
+            Err(MeasureError::Interrupted)
+        } else {
+            Ok(())
+        }
+    };
     let metric = subject.metric();
     let points = points(subject, effort);
     let (rows, _) = configurations(subject, effort);
@@ -158,9 +159,13 @@ pub(crate) fn measure(
             ..errors
         },
     };
-    let mut model = truth.as_ref().map(|truth| with_worst(statistics(metric, precise, truth), precise, truth));
+    let mut model = truth
+        .as_ref()
+        .map(|truth| with_worst(statistics(metric, precise, truth), precise, truth));
     let mut rounding_cpu = with_worst(statistics(metric, &single, precise), &single, precise);
-    let mut rounding = on_device.as_ref().map(|got| with_worst(statistics(metric, got, precise), got, precise));
+    let mut rounding = on_device
+        .as_ref()
+        .map(|got| with_worst(statistics(metric, got, precise), got, precise));
     let expected = truth.as_ref().unwrap_or(precise);
     let mut verdict = verdict(subject, &rows, on_device.as_ref().unwrap_or(&single), expected);
 
@@ -180,7 +185,11 @@ pub(crate) fn measure(
             check()?;
             let rows: Vec<Json> = points.iter().map(|p| subject.domain.row(p)).collect();
             let (got, wanted) = of.values(subject, &rows)?;
-            Ok(got.iter().zip(&wanted).map(|(got, wanted)| largest(metric, got, wanted).0).collect())
+            Ok(got
+                .iter()
+                .zip(&wanted)
+                .map(|(got, wanted)| largest(metric, got, wanted).0)
+                .collect())
         })?;
         let Some((point, size)) = found else { continue };
         let searched = Searched { subject, device, of };
@@ -192,7 +201,15 @@ pub(crate) fn measure(
         worst[place] = Some((point, size));
     }
     let mut random = Random::new(subject.experiment.declared.seed, 3);
-    let segments: Vec<_> = points.iter().cycle().take(effort.segments.min(points.len() * 4)).cloned().collect();
+    // Where the error is large a jump is likely; the others are for jumps where it is small on both sides.
+    let mut by_error: Vec<(f64, &Vec<f64>)> = points
+        .iter()
+        .zip(precise.iter().zip(expected))
+        .map(|(point, (got, truth))| (largest(metric, got, truth).0, point))
+        .collect();
+    by_error.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let worst_first = by_error.iter().take(effort.segments / 2).map(|(_, point)| *point);
+    let segments: Vec<_> = worst_first.chain(points.iter().take(effort.segments / 2)).cloned().collect();
     verdict.discontinuous = jumps(subject, &segments, &mut random)?;
     check()?;
 
@@ -250,7 +267,14 @@ fn recipe_text(subject: &Subject) -> String {
     if node.fill.is_empty() && node.freeze.is_empty() {
         return node.module.clone();
     }
-    subject.alternative.recipe.source.text.split_whitespace().collect::<Vec<_>>().join(" ")
+    subject
+        .alternative
+        .recipe
+        .source
+        .text
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// What a search found, on its way into the row.

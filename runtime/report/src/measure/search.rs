@@ -90,7 +90,9 @@ mod tests {
                 .map(|p| (p.clone(), peak(at, &p)))
                 .collect();
             let sampled = start.iter().map(|s| s.1).fold(0.0, f64::max);
-            let best = search(&start, EFFORT, &mut random, |points| Ok(points.iter().map(|p| peak(at, p)).collect()));
+            let best = search(&start, EFFORT, &mut random, |points| {
+                Ok(points.iter().map(|p| peak(at, p)).collect())
+            });
             let (_, found) = best.unwrap().unwrap();
             assert!(found > 500.0 && sampled < 100.0, "{sampled} {found}");
         }

@@ -258,7 +258,10 @@ fn numbers_of(value: &Value) -> Json {
 
 /// Zero of a scalar, vector or matrix type as written in WGSL.
 fn zero(ty: &str) -> Json {
-    let size = ty.strip_prefix("vec").and_then(|rest| rest.chars().next()).and_then(|c| c.to_digit(10));
+    let size = ty
+        .strip_prefix("vec")
+        .and_then(|rest| rest.chars().next())
+        .and_then(|c| c.to_digit(10));
     match size {
         Some(size) => Json::Array(vec![json!(0.0); size as usize]),
         None => json!(0.0),

@@ -56,7 +56,10 @@ pub struct Fault<'a> {
 
 /// All faults of a report: the worst kind first, within it in the report's order.
 pub fn faults(report: &Report) -> Vec<Fault<'_>> {
-    let rows = report.experiments.iter().flat_map(|results| results.rows.iter().map(move |row| (results, row)));
+    let rows = report
+        .experiments
+        .iter()
+        .flat_map(|results| results.rows.iter().map(move |row| (results, row)));
     let mut faults: Vec<Fault<'_>> = rows.flat_map(|(results, row)| of_row(results, row)).collect();
     faults.extend(report.agreement.iter().filter(|one| one.outside > 0).map(of_device));
     faults.sort_by_key(|fault| fault.kind);

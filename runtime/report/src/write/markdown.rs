@@ -50,7 +50,10 @@ fn errors(results: &Results, row: &Row) -> String {
 
 /// `ok`, or what happened how often. What the device did is no part of it.
 fn verdict(results: &Results, row: &Row) -> String {
-    let on_cpu = Row { rounding: None, ..row.clone() };
+    let on_cpu = Row {
+        rounding: None,
+        ..row.clone()
+    };
     let faults = of_row(results, &on_cpu);
     let parts: Vec<String> = faults
         .iter()

@@ -54,7 +54,7 @@ pub enum WriteError {
 }
 
 /// All files of a report, relative names (with `/`) and bytes: `report.html`, `report.json`, `rows.csv`, for each experiment
-/// `plots/NAME-model` and `plots/NAME-rounding` as `.svg` and `.png`, and `pictures/NAME.png` for each row that has a picture.
+/// of two rows or more `plots/NAME-model` and `plots/NAME-rounding` as `.svg` and `.png`, and `pictures/NAME.png` for each row that has a picture.
 /// Names are unique, also where letters' case does not count. The caller writes them.
 ///
 /// # Errors
@@ -68,7 +68,10 @@ pub fn files(report: &Report) -> Result<Vec<(String, Vec<u8>)>, WriteError> {
         ("report.json".to_owned(), json),
         ("rows.csv".to_owned(), tables::rows(report)?),
     ];
-    for figure in figures.into_iter().flat_map(|figures| figures.plots.into_iter().chain(figures.pictures)) {
+    for figure in figures
+        .into_iter()
+        .flat_map(|figures| figures.plots.into_iter().chain(figures.pictures))
+    {
         // The SVG of a picture stands in the page alone: it is a PNG with names around it.
         if figure.name.starts_with("plots/") {
             files.push((format!("{}.svg", figure.name), figure.svg.into_bytes()));

@@ -105,7 +105,11 @@ pub fn page(report: &Report, figures: &[Figures]) -> Result<String, WriteError> 
     let anchor = |fault: &Fault<'_>| match fault.row {
         None => "agreement".to_owned(),
         Some(_) => {
-            let found = report.experiments.iter().zip(figures).find(|(results, _)| results.name == fault.place);
+            let found = report
+                .experiments
+                .iter()
+                .zip(figures)
+                .find(|(results, _)| results.name == fault.place);
             found.map(|(_, figures)| format!("x-{}", figures.name)).unwrap_or_default()
         }
     };
@@ -114,14 +118,25 @@ pub fn page(report: &Report, figures: &[Figures]) -> Result<String, WriteError> 
         colours: Colour::THEMED.iter().map(|colour| (colour.hex(), colour.variable())).collect(),
         faults: faults.iter().map(|fault| fault_line(fault, anchor(fault))).collect(),
         overview: table::overview(report, figures),
-        sections: report.experiments.iter().zip(figures).map(|(results, figures)| section(results, figures)).collect(),
+        sections: report
+            .experiments
+            .iter()
+            .zip(figures)
+            .map(|(results, figures)| section(results, figures))
+            .collect(),
         agreement: (!report.agreement.is_empty()).then(|| table::agreement(&report.agreement)),
         closest: report.agreement.iter().filter_map(closest_line).collect(),
         without: report.without.iter().collect(),
     };
     let text = environment.get_template("page.html")?.render(&page)?;
     // Of the control characters XML allows line breaks and tabs alone.
-    let legal = |letter: char| if letter.is_control() && !matches!(letter, '\n' | '\t') { char::REPLACEMENT_CHARACTER } else { letter };
+    let legal = |letter: char| {
+        if letter.is_control() && !matches!(letter, '\n' | '\t') {
+            char::REPLACEMENT_CHARACTER
+        } else {
+            letter
+        }
+    };
     Ok(text.chars().map(legal).collect())
 }
 
@@ -145,17 +160,22 @@ fn section<'a>(results: &'a Results, figures: &'a Figures) -> Section<'a> {
         errors: table::errors(results),
         costs: table::costs(results),
         alternatives: results.rows.iter().map(|row| alternative(results, row)).collect(),
-        pictures: pictured.zip(&figures.pictures).map(|(row, figure)| picture(results, row, figure.svg.clone())).collect(),
+        pictures: pictured
+            .zip(&figures.pictures)
+            .map(|(row, figure)| picture(results, row, figure.svg.clone()))
+            .collect(),
     }
 }
 
 fn alternative<'a>(results: &Results, row: &'a Row) -> Alternative<'a> {
     let all = [
-        ("model", row.model.as_ref()),
-        ("rounding on the device", row.rounding.as_ref()),
-        ("rounding of the evaluator", Some(&row.rounding_cpu)),
+        ("model error", row.model.as_ref()),
+        ("rounding error on the device", row.rounding.as_ref()),
+        ("rounding error of the evaluator", Some(&row.rounding_cpu)),
     ];
-    let worsts = all.into_iter().filter_map(|(of, errors)| errors.map(|errors| worst_line(results, row, of, errors)));
+    let worsts = all
+        .into_iter()
+        .filter_map(|(of, errors)| errors.map(|errors| worst_line(results, row, of, errors)));
     Alternative {
         label: &row.label,
         summary: &row.summary,
@@ -176,9 +196,9 @@ fn worst_line(results: &Results, row: &Row, of: &'static str, errors: &Errors) -
 fn picture(results: &Results, row: &Row, svg: String) -> PictureView {
     let of_model = row.picture.as_ref().is_some_and(|picture| picture.of == "model");
     let (of, errors) = match (&row.model, &row.rounding) {
-        (Some(model), _) if of_model => ("model", model),
-        (_, Some(device)) => ("rounding on the device", device),
-        _ => ("rounding of the evaluator", &row.rounding_cpu),
+        (Some(model), _) if of_model => ("model error", model),
+        (_, Some(device)) => ("rounding error on the device", device),
+        _ => ("rounding error of the evaluator", &row.rounding_cpu),
     };
     let line = worst_line(results, row, of, errors);
     PictureView {

@@ -11,7 +11,7 @@ pub struct Named {
 }
 
 /// Half the side of what a point's mark covers.
-const MARK: f64 = 9.0;
+const MARK: f64 = 10.0;
 /// Free space around a name.
 const GAP: f64 = 2.0;
 /// Distances to try, between a mark and its name.
@@ -19,7 +19,8 @@ const DISTANCES: [f64; 10] = [0.0, 8.0, 18.0, 30.0, 45.0, 65.0, 90.0, 120.0, 160
 /// Directions to try, the first is the best: right, left, then what lies between.
 const DIRECTIONS: usize = 24;
 
-/// A place for each name, within `bounds`; none where all are taken. Lines should not run through names, but may. Earlier points choose first.
+/// A place for each name, within `bounds`; none where all are taken. Lines should not run through names, nor the line from a point to its name
+/// through another, but may. Earlier points choose first.
 pub fn place(named: &[Named], lines: &[[[f64; 2]; 2]], bounds: Box2) -> Vec<Option<Box2>> {
     let marks: Vec<Box2> = named.iter().map(|one| around(one.at, [2.0 * MARK, 2.0 * MARK])).collect();
     let mut taken: Vec<Box2> = Vec::new();
@@ -32,7 +33,9 @@ pub fn place(named: &[Named], lines: &[[[f64; 2]; 2]], bounds: Box2) -> Vec<Opti
             if !is_free {
                 continue;
             }
-            let crossed = lines.iter().filter(|line| crosses(**line, wide)).count();
+            let leader = [one.at, nearest(candidate, one.at)];
+            let crossed = lines.iter().filter(|line| crosses(**line, wide)).count()
+                + taken.iter().filter(|other| runs_through(leader, **other)).count();
             if best.is_none_or(|(least, _)| crossed < least) {
                 best = Some((crossed, candidate));
             }
@@ -81,6 +84,14 @@ fn crosses([[x0, y0], [x1, y1]]: [[f64; 2]; 2], place: Box2) -> bool {
     overlap([x0.min(x1), y0.min(y1), x0.max(x1) + 1e-3, y0.max(y1) + 1e-3], place)
 }
 
+/// Whether a short line of any direction runs through a rectangle, at one of a few places on it.
+fn runs_through([[x0, y0], [x1, y1]]: [[f64; 2]; 2], place: Box2) -> bool {
+    (0..=16).map(|step| f64::from(step) / 16.0).any(|part| {
+        let [x, y] = [x0 + (x1 - x0) * part, y0 + (y1 - y0) * part];
+        overlap([x - 0.1, y - 0.1, x + 0.1, y + 0.1], place)
+    })
+}
+
 /// The point of a rectangle that is nearest to a place.
 pub fn nearest([left, top, right, bottom]: Box2, [x, y]: [f64; 2]) -> [f64; 2] {
     [x.clamp(left, right), y.clamp(top, bottom)]
@@ -100,7 +111,10 @@ mod tests {
             size,
         }));
         let bounds = [50.0, 50.0, 500.0, 380.0];
-        let places: Vec<Box2> = place(&named, &[], bounds).into_iter().map(|place| place.expect("a place")).collect();
+        let places: Vec<Box2> = place(&named, &[], bounds)
+            .into_iter()
+            .map(|place| place.expect("a place"))
+            .collect();
         for (index, one) in places.iter().enumerate() {
             assert!(inside(*one, bounds), "{one:?}");
             assert!(places.iter().skip(index + 1).all(|other| !overlap(*one, *other)), "{places:?}");
@@ -115,9 +129,19 @@ mod tests {
     /// Catches a name without a place that is put somewhere all the same, and one on the frontier's line where there is room beside it.
     #[test]
     fn names_that_fit_nowhere_are_left_out() {
-        let one = Named { at: [10.0, 10.0], size: [90.0, 14.0] };
+        let one = Named {
+            at: [10.0, 10.0],
+            size: [90.0, 14.0],
+        };
         assert_eq!(place(&[one], &[], [0.0, 0.0, 40.0, 40.0]), [None]);
-        let free = place(&[Named { at: [100.0, 100.0], ..one }], &[[[100.0, 100.0], [300.0, 100.0]]], [0.0, 0.0, 400.0, 200.0]);
-        assert!(free[0].is_some_and(|place| !crosses([[100.0, 100.0], [300.0, 100.0]], place)), "{free:?}");
+        let free = place(
+            &[Named { at: [100.0, 100.0], ..one }],
+            &[[[100.0, 100.0], [300.0, 100.0]]],
+            [0.0, 0.0, 400.0, 200.0],
+        );
+        assert!(
+            free[0].is_some_and(|place| !crosses([[100.0, 100.0], [300.0, 100.0]], place)),
+            "{free:?}"
+        );
     }
 }

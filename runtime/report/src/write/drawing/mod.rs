@@ -1,6 +1,7 @@
 //! Plots and pictures. What is drawn is a list of marks; one painter draws it as SVG and as PNG, so that both show the same.
 
 pub mod axis;
+pub mod chart;
 pub mod colour;
 pub mod label;
 pub mod paint;
@@ -34,11 +35,7 @@ pub struct Drawing {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
     /// A line through points.
-    Line {
-        points: Vec<[f64; 2]>,
-        colour: Colour,
-        width: f64,
-    },
+    Line { points: Vec<[f64; 2]>, colour: Colour, width: f64 },
     /// A filled circle.
     Disc { centre: [f64; 2], radius: f64, colour: Colour },
     /// A circle's line.
@@ -102,7 +99,7 @@ pub struct Figure {
 pub struct Figures {
     /// Anchor of the experiment in the page: the part of its files' names.
     pub name: String,
-    /// Model error, then rounding error; none where there are no rows.
+    /// Model error, then rounding error; none where there are fewer than two rows, since one has nothing to be compared with.
     pub plots: Vec<Figure>,
     /// What the plots say beneath.
     pub captions: Vec<String>,
@@ -127,11 +124,14 @@ pub fn figures(report: &Report) -> Result<Vec<Figures>, WriteError> {
 }
 
 fn of_experiment(results: &Results, name: String, names: &mut Names) -> Result<Figures, WriteError> {
-    let mut figures = Figures { name, ..Figures::default() };
-    if !results.rows.is_empty() {
+    let mut figures = Figures {
+        name,
+        ..Figures::default()
+    };
+    if results.rows.len() >= 2 {
         for (end, plot) in [("model", pareto::of_model(results)), ("rounding", pareto::of_rounding(results))] {
             let path = format!("plots/{}-{end}", figures.name);
-            figures.plots.push(paint::figure(path, &pareto::draw(&plot)?)?);
+            figures.plots.push(paint::figure(path, &chart::draw(&plot)?)?);
             figures.captions.push(plot.caption());
         }
     }

@@ -30,7 +30,12 @@ const DROP: f64 = 0.13;
 /// The font is no font.
 pub fn register_font() -> Result<(), WriteError> {
     let wrong = |_| WriteError::Draw("the font cannot be read".to_owned());
-    plotters::style::register_font(FontFamily::SansSerif.as_str(), FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).map_err(wrong)
+    plotters::style::register_font(
+        FontFamily::SansSerif.as_str(),
+        FontStyle::Normal,
+        epaint_default_fonts::UBUNTU_LIGHT,
+    )
+    .map_err(wrong)
 }
 
 /// Width of a text in pixels, with room for another font than ours.
@@ -78,11 +83,7 @@ fn stroke(colour: Colour, width: f64) -> ShapeStyle {
 }
 
 /// Paints marks. `drop` moves texts down by this part of their size.
-fn paint<DB: DrawingBackend>(
-    area: &DrawingArea<DB, Shift>,
-    marks: &[Mark],
-    drop: f64,
-) -> Result<(), DrawingAreaErrorKind<DB::ErrorType>> {
+fn paint<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, marks: &[Mark], drop: f64) -> Result<(), DrawingAreaErrorKind<DB::ErrorType>> {
     for mark in marks {
         match mark {
             Mark::Line { points, colour, width } => {
@@ -118,7 +119,9 @@ fn paint<DB: DrawingBackend>(
                 } else {
                     (FontTransform::None, [*x, y + down])
                 };
-                let font = (FontFamily::SansSerif, size * EM * f64::from(UNITS)).into_font().transform(transform);
+                let font = (FontFamily::SansSerif, size * EM * f64::from(UNITS))
+                    .into_font()
+                    .transform(transform);
                 let colour = solid(*colour);
                 let style = TextStyle::from(font).color(&colour).pos(Pos::new(across, VPos::Center));
                 area.draw(&Text::new(clean(text), place(at), style))?;
@@ -158,12 +161,16 @@ pub fn svg(drawing: &Drawing) -> Result<String, WriteError> {
         text += &embedded(raster)?;
     }
     // A text's line break is a space to a browser, which moves what is anchored at its end.
-    text += &painted.get(start..end).unwrap_or_default().replace("\">\n", "\">").replace("\n</text>", "</text>");
+    text += &painted
+        .get(start..end)
+        .unwrap_or_default()
+        .replace("\">\n", "\">")
+        .replace("\n</text>", "</text>");
     for target in &drawing.targets {
         let (x, y) = place(target.at);
-        let name = escape(&target.name);
+        let (title, name) = (escape(&target.name), escape(&target.name.replace('\n', "; ")));
         text += &format!(
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" fill-opacity=\"0\" role=\"img\" aria-label=\"{name}\"><title>{name}</title></circle>\n",
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" fill-opacity=\"0\" role=\"img\" aria-label=\"{name}\"><title>{title}</title></circle>\n",
             units(11.0)
         );
     }
@@ -174,7 +181,13 @@ pub fn svg(drawing: &Drawing) -> Result<String, WriteError> {
 /// For elements and attributes of XML.
 fn escape(text: &str) -> String {
     text.split('\n')
-        .map(|line| clean(line).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;"))
+        .map(|line| {
+            clean(line)
+                .replace('&', "&amp;")
+                .replace('<', "&lt;")
+                .replace('>', "&gt;")
+                .replace('"', "&quot;")
+        })
         .collect::<Vec<_>>()
         .join("\n")
 }

@@ -1,46 +1,29 @@
 //! Error against cost: what costs more and errs more than another has no use.
 
-use super::axis::Axis;
-use super::colour::Colour;
-use super::label::{Named, nearest, place};
-use super::paint::width;
-use super::{Anchor, Drawing, Mark, Target};
 use crate::data::{Results, Row};
-use crate::write::WriteError;
 use crate::write::faults::of_row;
 use crate::write::number::number;
-use crate::write::text::short;
-
-const WIDTH: u32 = 560;
-const HEIGHT: u32 = 440;
-/// The area of the axes: left, top, right, bottom.
-const AREA: [f64; 4] = [62.0, 62.0, 546.0, 372.0];
-/// Size of text.
-const TEXT: f64 = 13.5;
-const SMALL: f64 = 12.0;
-/// Letters of a name.
-const LETTERS: usize = 26;
-/// Radius of a point.
-const RADIUS: f64 = 5.5;
 
 /// An alternative's place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    label: String,
-    cost: f64,
-    error: f64,
-    dominated: bool,
-    faulty: bool,
+    pub(super) label: String,
+    pub(super) cost: f64,
+    pub(super) error: f64,
+    pub(super) dominated: bool,
+    pub(super) faulty: bool,
     /// Its error is 0 because it is the truth itself.
-    truth: bool,
+    pub(super) truth: bool,
 }
 
 /// A plot before it is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
-    title: String,
-    error: String,
-    points: Vec<Point>,
+    pub(super) title: String,
+    pub(super) error: String,
+    pub(super) points: Vec<Point>,
+    /// Dominated rows are so in this plot's errors.
+    pub(super) has_frontier: bool,
 }
 
 /// For each point, cost first and error second: whether another is no worse in both and better in one. Of equal points none dominates; NaN
@@ -55,28 +38,34 @@ pub fn of_model(results: &Results) -> Plot {
     let points = results.rows.iter().map(|row| Point {
         error: row.model.as_ref().map_or(0.0, |errors| errors.rms),
         truth: row.model.is_none(),
-        dominated: row.dominated,
         ..point(results, row)
     });
     Plot {
         title: format!("{}: model", results.name),
         error: format!("model error, RMS, {}", results.metric),
         points: points.collect(),
+        has_frontier: true,
     }
 }
 
-/// The largest rounding error, on the device where there was one, else of the evaluator. Which rows are dominated is computed: here the errors
-/// are others.
+/// The largest rounding error, on the device where there was one, else of the evaluator. Where the rows differ in their model, rounding alone makes
+/// none of them useless: a crude formula may round best. Dominated are then the same rows as in the model's plot, and there is no frontier.
+/// Where they do not, rounding and cost decide.
 pub fn of_rounding(results: &Results) -> Plot {
     let mut points: Vec<Point> = results.rows.iter().map(|row| point(results, row)).collect();
-    let places: Vec<[f64; 2]> = points.iter().map(|point| [point.cost, point.error]).collect();
-    for (point, dominated) in points.iter_mut().zip(dominated(&places)) {
-        point.dominated = dominated;
+    let model = |row: &Row| row.model.as_ref().map_or(0.0, |errors| errors.rms);
+    let has_frontier = results.rows.windows(2).all(|pair| model(&pair[0]) == model(&pair[1]));
+    if has_frontier {
+        let places: Vec<[f64; 2]> = points.iter().map(|point| [point.cost, point.error]).collect();
+        for (point, dominated) in points.iter_mut().zip(dominated(&places)) {
+            point.dominated = dominated;
+        }
     }
     Plot {
         title: format!("{}: rounding", results.name),
         error: format!("largest rounding error, {}", results.metric),
         points,
+        has_frontier,
     }
 }
 
@@ -85,7 +74,7 @@ fn point(results: &Results, row: &Row) -> Point {
         label: row.label.clone(),
         cost: row.executed.mean,
         error: row.rounding.as_ref().unwrap_or(&row.rounding_cpu).max,
-        dominated: false,
+        dominated: row.dominated,
         faulty: !of_row(results, row).is_empty(),
         truth: false,
     }
@@ -95,13 +84,18 @@ impl Plot {
     /// What it shows, and which rows have no place in it.
     pub fn caption(&self) -> String {
         let dominated = self.points.iter().filter(|point| point.dominated).count();
-        let mut text = format!(
-            "{} against cost. {} of {} on the frontier, {dominated} dominated.",
-            capital(&self.error),
-            self.points.len() - dominated,
-            self.points.len()
-        );
-        let nowhere: Vec<&str> = self.points.iter().filter(|point| !point.has_place()).map(|point| point.label.as_str()).collect();
+        let left = self.points.iter().filter(|point| point.has_place() && !point.dominated).count();
+        let mut text = format!("{} against cost. ", capital(&self.error));
+        text += &match self.has_frontier {
+            true => format!("{left} of {} on the frontier, {dominated} dominated.", self.points.len()),
+            false => "Grey are those that are dominated in model error and cost.".to_owned(),
+        };
+        let nowhere: Vec<&str> = self
+            .points
+            .iter()
+            .filter(|point| !point.has_place())
+            .map(|point| point.label.as_str())
+            .collect();
         if !nowhere.is_empty() {
             text += &format!(" Not drawn, since an error or a cost is no number: {}.", nowhere.join(", "));
         }
@@ -110,13 +104,22 @@ impl Plot {
 }
 
 impl Point {
-    fn has_place(&self) -> bool {
+    pub(super) fn has_place(&self) -> bool {
         self.cost >= 0.0 && self.error >= 0.0
     }
 
-    fn name(&self, error: &str) -> String {
-        let mut name = format!("{}\n{error}: {}\ncost: {} operations", self.label, number(self.error), number(self.cost));
-        for (is, what) in [(self.truth, "it is the truth"), (self.dominated, "dominated"), (self.faulty, "with faults")] {
+    pub(super) fn name(&self, error: &str) -> String {
+        let mut name = format!(
+            "{}\n{error}: {}\ncost: {} operations",
+            self.label,
+            number(self.error),
+            number(self.cost)
+        );
+        for (is, what) in [
+            (self.truth, "it is the truth"),
+            (self.dominated, "dominated"),
+            (self.faulty, "with faults"),
+        ] {
             if is {
                 name += "\n";
                 name += what;
@@ -128,208 +131,9 @@ impl Point {
 
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// # Errors
-/// The font is missing.
-pub fn draw(plot: &Plot) -> Result<Drawing, WriteError> {
-    let points: Vec<&Point> = plot.points.iter().filter(|point| point.has_place()).collect();
-    let [left, top, right, bottom] = AREA;
-    let across = Axis::new(points.iter().map(|point| point.cost), left, right);
-    let up = Axis::new(points.iter().map(|point| point.error), bottom, top);
-    let mut drawing = Drawing {
-        width: WIDTH,
-        height: HEIGHT,
-        description: plot.caption(),
-        ..Drawing::default()
-    };
-    let at = |point: &Point| across.place(point.cost).zip(up.place(point.error)).map(|(x, y)| [x, y]);
-    // In the order of cost, so that marks and names do not depend on the rows' order more than they must.
-    let mut placed: Vec<([f64; 2], &Point)> = points.into_iter().filter_map(|point| Some((at(point)?, point))).collect();
-    placed.sort_by(|a, b| (a.1.dominated, a.0[0], a.0[1]).partial_cmp(&(b.1.dominated, b.0[0], b.0[1])).unwrap_or(std::cmp::Ordering::Equal));
-
-    axes(&mut drawing.marks, plot, &across, &up);
-    let frontier = frontier(&placed);
-    if !frontier.is_empty() {
-        drawing.marks.push(Mark::Line {
-            points: frontier.clone(),
-            colour: Colour::Frontier,
-            width: 1.5,
-        });
-    }
-    names(&mut drawing.marks, &placed, &frontier)?;
-    // The dominated ones under the others.
-    for (centre, point) in placed.iter().rev() {
-        dot(&mut drawing.marks, *centre, point);
-        drawing.targets.push(Target {
-            at: *centre,
-            name: point.name(&plot.error),
-        });
-    }
-    legend(&mut drawing.marks, &placed)?;
-    Ok(drawing)
-}
-
-fn text(at: [f64; 2], text: impl Into<String>, size: f64, colour: Colour, anchor: Anchor) -> Mark {
-    Mark::Text {
-        at,
-        text: text.into(),
-        size,
-        colour,
-        anchor,
-        turned: false,
-    }
-}
-
-fn line(from: [f64; 2], to: [f64; 2], colour: Colour, width: f64) -> Mark {
-    Mark::Line {
-        points: vec![from, to],
-        colour,
-        width,
-    }
-}
-
-fn axes(marks: &mut Vec<Mark>, plot: &Plot, across: &Axis, up: &Axis) {
-    let [left, top, right, bottom] = AREA;
-    for tick in across.ticks() {
-        marks.push(line([tick.at, top], [tick.at, bottom], Colour::Grid, 1.0));
-        marks.extend(tick.label.map(|label| text([tick.at, bottom + 13.0], label, SMALL, Colour::Faint, Anchor::Middle)));
-    }
-    for tick in up.ticks() {
-        marks.push(line([left, tick.at], [right, tick.at], Colour::Grid, 1.0));
-        marks.extend(tick.label.map(|label| text([left - 7.0, tick.at], label, SMALL, Colour::Faint, Anchor::End)));
-    }
-    // The strips of what has no logarithm, cut off by a double line.
-    let [x0, x1] = across.scale();
-    let [y0, y1] = up.scale();
-    for (strip, edge, label) in [(across.zero, x0, "0"), (across.infinite, x1, "∞")] {
-        if let Some(at) = strip {
-            for side in [-1.5, 1.5] {
-                marks.push(line([edge + side, top], [edge + side, bottom], Colour::Axis, 1.0));
-            }
-            marks.push(text([at, bottom + 13.0], label, SMALL, Colour::Ink, Anchor::Middle));
-        }
-    }
-    for (strip, edge, label) in [(up.zero, y0, "0"), (up.infinite, y1, "∞")] {
-        if let Some(at) = strip {
-            for side in [-1.5, 1.5] {
-                marks.push(line([left, edge + side], [right, edge + side], Colour::Axis, 1.0));
-            }
-            marks.push(text([left - 7.0, at], label, SMALL, Colour::Ink, Anchor::End));
-        }
-    }
-    marks.push(Mark::Line {
-        points: vec![[left, top], [left, bottom], [right, bottom]],
-        colour: Colour::Axis,
-        width: 1.25,
-    });
-    marks.push(text([10.0, 16.0], short(&plot.title, 68), 15.0, Colour::Ink, Anchor::Start));
-    marks.push(text([10.0, 42.0], format!("↑ {}", short(&plot.error, 76)), TEXT, Colour::Faint, Anchor::Start));
-    marks.push(text([right, bottom + 33.0], "cost: weighted operations executed, mean →", TEXT, Colour::Faint, Anchor::End));
-}
-
-/// The border of what some row dominates: a staircase through the rows that none does, from the cheapest.
-fn frontier(placed: &[([f64; 2], &Point)]) -> Vec<[f64; 2]> {
-    let [_, top, right, _] = AREA;
-    let mut steps: Vec<[f64; 2]> = Vec::new();
-    // Sorted by cost, and what dominates nothing more last.
-    for (at, _) in placed.iter().filter(|(_, point)| !point.dominated) {
-        let above = steps.last().map_or(top, |last| last[1]);
-        steps.push([at[0], above]);
-        steps.push(*at);
-    }
-    if let Some(last) = steps.last().copied() {
-        steps.push([right, last[1]]);
-    }
-    steps
-}
-
-fn names(marks: &mut Vec<Mark>, placed: &[([f64; 2], &Point)], frontier: &[[f64; 2]]) -> Result<(), WriteError> {
-    let labels: Vec<String> = placed.iter().map(|(_, point)| short(&point.label, LETTERS)).collect();
-    let mut named = Vec::new();
-    for ((at, _), label) in placed.iter().zip(&labels) {
-        named.push(Named {
-            at: *at,
-            size: [width(label, TEXT)?, TEXT],
-        });
-    }
-    let lines: Vec<[[f64; 2]; 2]> = frontier.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-    let [left, top, right, bottom] = AREA;
-    let places = place(&named, &lines, [left + 3.0, top, right + 10.0, bottom - 2.0]);
-    for (((at, point), label), space) in placed.iter().zip(labels).zip(&places) {
-        let Some(space) = space else { continue };
-        let from = nearest(*space, *at);
-        let away = [from[0] - at[0], from[1] - at[1]];
-        let distance = away[0].hypot(away[1]);
-        if distance > RADIUS + 12.0 {
-            let edge = [at[0] + away[0] / distance * (RADIUS + 2.0), at[1] + away[1] / distance * (RADIUS + 2.0)];
-            marks.push(line(edge, from, Colour::Dominated, 1.0));
-        }
-        let colour = if point.dominated { Colour::Dominated } else { Colour::Ink };
-        marks.push(text([space[0], (space[1] + space[3]) / 2.0], label, TEXT, colour, Anchor::Start));
-    }
-    let missing = places.iter().filter(|place| place.is_none()).count();
-    if missing > 0 {
-        let note = format!("{missing} without a name: no room");
-        marks.push(text([right, top - 8.0], note, SMALL, Colour::Faint, Anchor::End));
-    }
-    Ok(())
-}
-
-fn dot(marks: &mut Vec<Mark>, centre: [f64; 2], point: &Point) {
-    let colour = if point.dominated { Colour::Dominated } else { Colour::Frontier };
-    let radius = RADIUS;
-    // Paper around it, so that points over each other stay two.
-    marks.push(Mark::Disc {
-        centre,
-        radius: radius + 1.25,
-        colour: Colour::Paper,
-    });
-    marks.push(Mark::Disc { centre, radius, colour });
-    if point.truth {
-        marks.push(Mark::Disc {
-            centre,
-            radius: radius - 2.0,
-            colour: Colour::Paper,
-        });
-    }
-    if point.faulty {
-        marks.push(Mark::Ring {
-            centre,
-            radius: radius + 3.0,
-            colour: Colour::Fault,
-            width: 1.75,
-        });
-    }
-}
-
-/// What the marks mean, of those that there are.
-fn legend(marks: &mut Vec<Mark>, placed: &[([f64; 2], &Point)]) -> Result<(), WriteError> {
-    let plain = Point {
-        label: String::new(),
-        cost: 0.0,
-        error: 0.0,
-        dominated: false,
-        faulty: false,
-        truth: false,
-    };
-    let has = |of: fn(&Point) -> bool| placed.iter().any(|(_, point)| of(point));
-    let grey = Point { dominated: true, ..plain.clone() };
-    let entries = [
-        (has(|point| !point.dominated), plain.clone(), "on the frontier"),
-        (has(|point| point.dominated), grey, "dominated"),
-        (has(|point| point.truth), Point { truth: true, ..plain.clone() }, "the truth itself"),
-        (has(|point| point.faulty), Point { faulty: true, ..plain }, "with faults"),
-    ];
-    let mut x = AREA[0] + 6.0;
-    let y = f64::from(HEIGHT) - 14.0;
-    for (_, point, meaning) in entries.into_iter().filter(|(is_there, ..)| *is_there) {
-        dot(marks, [x, y], &point);
-        marks.push(text([x + 13.0, y], meaning, SMALL, Colour::Faint, Anchor::Start));
-        x += 13.0 + width(meaning, SMALL)? + 24.0;
-    }
-    Ok(())
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]

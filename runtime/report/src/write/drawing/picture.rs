@@ -1,6 +1,8 @@
 //! Where on a plane of its inputs a module errs: a heat map of the error's decimal logarithm.
 
+use super::axis::{every, label};
 use super::colour::{Colour, NOT_FINITE, ZERO, viridis};
+use super::paint::DENSITY;
 use super::{Anchor, Drawing, Mark, Raster, Target};
 use crate::data::{Picture, Row};
 use crate::write::WriteError;
@@ -13,8 +15,8 @@ const HEIGHT: u32 = 388;
 const CORNER: [f64; 2] = [34.0, 36.0];
 /// Its side.
 const SIDE: f64 = 288.0;
-/// Left edge and width of the scale's bar, and cells in it.
-const BAR: [f64; 2] = [340.0, 14.0];
+/// Distance of the scale's bar from the map, its width, and cells in it.
+const BAR: [f64; 2] = [18.0, 14.0];
 const BAR_CELLS: u32 = 144;
 /// Decades that the scale shows below the largest error. What is less is drawn as its lower end.
 const DECADES: f64 = 12.0;
@@ -33,12 +35,22 @@ struct Scale {
 impl Scale {
     /// None where all errors are 0.
     fn of(errors: &[Option<f64>]) -> Option<Scale> {
-        let logs = || errors.iter().flatten().filter(|error| **error > 0.0 && error.is_finite()).map(|error| error.log10());
+        let logs = || {
+            errors
+                .iter()
+                .flatten()
+                .filter(|error| **error > 0.0 && error.is_finite())
+                .map(|error| error.log10())
+        };
         let high = logs().reduce(f64::max)?;
         let least = logs().fold(high, f64::min);
         // A hundredth of a decade, lest equal errors have a scale of no length.
         let low = least.max(high - DECADES).min(high - 0.01);
-        Some(Scale { low, high, cut: least < low })
+        Some(Scale {
+            low,
+            high,
+            cut: least < low,
+        })
     }
 
     fn colour(self, error: f64) -> [u8; 3] {
@@ -51,10 +63,14 @@ impl Scale {
         let end = |log: f64| number(10.0_f64.powf(log));
         let cut = if self.cut { "≤ " } else { "" };
         let mut marks = vec![(0.0, format!("{cut}{}", end(self.low))), (1.0, end(self.high))];
-        let every = ((self.high - self.low) / 6.0).ceil().max(1.0) as i32;
+        let every = every(self.high - self.low, 6.0);
         let decades = (self.low.ceil() as i32..=self.high.floor() as i32).filter(|decade| decade % every == 0);
         // The ends need their room.
-        marks.extend(decades.map(|decade| (part(f64::from(decade)), format!("1e{decade}"))).filter(|(at, _)| (0.07..=0.93).contains(at)));
+        marks.extend(
+            decades
+                .map(|decade| (part(f64::from(decade)), label(1, decade)))
+                .filter(|(at, _)| (0.07..=0.93).contains(at)),
+        );
         marks
     }
 }
@@ -80,8 +96,11 @@ pub fn draw(experiment: &str, row: &Row, picture: &Picture) -> Result<Drawing, W
         Some(error) if error.is_finite() => scale.map_or(ZERO, |scale| scale.colour(*error)),
         _ => NOT_FINITE,
     };
-    // Cells are whole pixels where that leaves none empty, so that all are equally large.
-    let cell = [width, height].map(|cells| SIDE / cells as f64).map(|cell| if cell >= 2.0 { cell.floor() } else { cell });
+    // Cells are whole pixels of the PNG where they are large enough, so that all are equally large.
+    let whole = |cell: f64| (cell * f64::from(DENSITY)).floor() / f64::from(DENSITY);
+    let cell = [width, height]
+        .map(|cells| SIDE / cells as f64)
+        .map(|cell| if cell >= 2.0 { whole(cell) } else { cell });
     let size = [cell[0] * width as f64, cell[1] * height as f64];
     let mut drawing = Drawing {
         width: WIDTH,
@@ -97,7 +116,7 @@ pub fn draw(experiment: &str, row: &Row, picture: &Picture) -> Result<Drawing, W
     });
     names(&mut drawing.marks, row, picture, size);
     if let Some(scale) = scale {
-        bar(&mut drawing, scale, size[1]);
+        bar(&mut drawing, scale, size);
     }
     legend(&mut drawing, picture, scale);
     mark(&mut drawing, picture, cell, size);
@@ -129,9 +148,21 @@ fn text(at: [f64; 2], text: impl Into<String>, size: f64, colour: Colour, anchor
 
 fn names(marks: &mut Vec<Mark>, row: &Row, picture: &Picture, size: [f64; 2]) {
     let [left, top] = CORNER;
-    marks.push(text([left, 16.0], short(&format!("{}: {} error", row.label, picture.of), 44), 15.0, Colour::Ink, Anchor::Start));
+    marks.push(text(
+        [left, 16.0],
+        short(&format!("{}: {} error", row.label, picture.of), 44),
+        15.0,
+        Colour::Ink,
+        Anchor::Start,
+    ));
     let [across, up] = picture.axes.each_ref().map(|axis| short(axis, 42));
-    marks.push(text([left + size[0] / 2.0, top + size[1] + 14.0], across, TEXT, Colour::Faint, Anchor::Middle));
+    marks.push(text(
+        [left + size[0] / 2.0, top + size[1] + 14.0],
+        across,
+        TEXT,
+        Colour::Faint,
+        Anchor::Middle,
+    ));
     marks.push(Mark::Text {
         at: [left - 14.0, top + size[1] / 2.0],
         text: up,
@@ -142,11 +173,13 @@ fn names(marks: &mut Vec<Mark>, row: &Row, picture: &Picture, size: [f64; 2]) {
     });
 }
 
-fn bar(drawing: &mut Drawing, scale: Scale, height: f64) {
+fn bar(drawing: &mut Drawing, scale: Scale, [width, height]: [f64; 2]) {
+    let left = CORNER[0] + width + BAR[0];
+    let right = left + BAR[1];
     let cell = height / f64::from(BAR_CELLS);
     let step = |index: u32| 1.0 - (f64::from(index) + 0.5) / f64::from(BAR_CELLS);
     drawing.rasters.push(Raster {
-        at: [BAR[0], CORNER[1]],
+        at: [left, CORNER[1]],
         cell: [BAR[1], cell],
         columns: 1,
         pixels: (0..BAR_CELLS).map(|index| viridis(step(index))).collect(),
@@ -156,11 +189,13 @@ fn bar(drawing: &mut Drawing, scale: Scale, height: f64) {
         let y = CORNER[1] + height * (1.0 - part);
         let middle = y.clamp(CORNER[1] + 5.0, CORNER[1] + height - 5.0);
         drawing.marks.push(Mark::Line {
-            points: vec![[BAR[0] + BAR[1], y], [BAR[0] + BAR[1] + 3.0, y]],
+            points: vec![[right, y], [right + 3.0, y]],
             colour: Colour::Axis,
             width: 1.0,
         });
-        drawing.marks.push(text([BAR[0] + BAR[1] + 6.0, middle], label, SMALL, Colour::Faint, Anchor::Start));
+        drawing
+            .marks
+            .push(text([right + 6.0, middle], label, SMALL, Colour::Faint, Anchor::Start));
     }
 }
 
@@ -168,9 +203,17 @@ fn bar(drawing: &mut Drawing, scale: Scale, height: f64) {
 fn legend(drawing: &mut Drawing, picture: &Picture, scale: Option<Scale>) {
     let y = f64::from(HEIGHT) - 16.0;
     let mut x = CORNER[0];
-    let not_finite = picture.errors.iter().filter(|error| error.is_none_or(|error| !error.is_finite())).count();
+    let not_finite = picture
+        .errors
+        .iter()
+        .filter(|error| error.is_none_or(|error| !error.is_finite()))
+        .count();
     let zero = picture.errors.iter().filter(|error| **error == Some(0.0)).count();
-    let all = if scale.is_none() && not_finite == 0 { "error is 0 everywhere" } else { "error is 0" };
+    let all = if scale.is_none() && not_finite == 0 {
+        "error is 0 everywhere"
+    } else {
+        "error is 0"
+    };
     for (count, colour, meaning, room) in [(zero, ZERO, all, 100.0), (not_finite, NOT_FINITE, "not finite", 0.0)] {
         if count > 0 {
             drawing.rasters.push(Raster {
@@ -179,7 +222,16 @@ fn legend(drawing: &mut Drawing, picture: &Picture, scale: Option<Scale>) {
                 columns: 1,
                 pixels: vec![colour],
             });
-            drawing.marks.push(text([x + 18.0, y], meaning, SMALL, Colour::Faint, Anchor::Start));
+            // Black is seen on a dark page too.
+            let [right, low] = [x + 12.0, y + 6.0];
+            drawing.marks.push(Mark::Line {
+                points: vec![[x, y - 6.0], [right, y - 6.0], [right, low], [x, low], [x, y - 6.0]],
+                colour: Colour::Axis,
+                width: 1.0,
+            });
+            drawing
+                .marks
+                .push(text([x + 18.0, y], meaning, SMALL, Colour::Faint, Anchor::Start));
             x += 18.0 + room;
         }
     }
@@ -221,7 +273,12 @@ mod tests {
         assert_eq!(scale.marks()[0], (0.0, "≤ 1.00e-12".to_owned()));
         let scale = of(&[0.01, 0.01]).expect("a scale");
         assert_eq!(scale.colour(0.01), viridis(1.0));
-        let labels: Vec<String> = of(&[1e-4, 0.5]).expect("a scale").marks().into_iter().map(|(_, label)| label).collect();
-        assert_eq!(labels, ["1.00e-4", "0.500", "1e-3", "1e-2"]);
+        let labels: Vec<String> = of(&[1e-4, 0.5])
+            .expect("a scale")
+            .marks()
+            .into_iter()
+            .map(|(_, label)| label)
+            .collect();
+        assert_eq!(labels, ["1.00e-4", "0.500", "0.001", "0.01", "0.1"]);
     }
 }

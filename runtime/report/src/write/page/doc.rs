@@ -12,8 +12,12 @@ pub fn html(markdown: &str) -> String {
         Event::Start(Tag::Heading { .. }) => Some(Event::Start(Tag::Paragraph)),
         Event::Start(Tag::Image { .. }) | Event::End(TagEnd::Image) => None,
         // An info string would become a class.
-        Event::Start(Tag::CodeBlock(_)) => Some(Event::Start(Tag::CodeBlock(pulldown_cmark::CodeBlockKind::Fenced(CowStr::Borrowed(""))))),
-        Event::Start(Tag::Link { dest_url, link_type, id, .. }) => {
+        Event::Start(Tag::CodeBlock(_)) => Some(Event::Start(Tag::CodeBlock(pulldown_cmark::CodeBlockKind::Fenced(
+            CowStr::Borrowed(""),
+        )))),
+        Event::Start(Tag::Link {
+            dest_url, link_type, id, ..
+        }) => {
             let is_harmless = ["https://", "http://", "#"].iter().any(|start| dest_url.starts_with(start));
             links.push(is_harmless);
             is_harmless.then_some(Event::Start(Tag::Link {
@@ -45,7 +49,10 @@ mod tests {
                 "<p>x &lt;img src=x onerror=alert(1)&gt; y</p>\n",
             ),
             ("<script>alert(1)</script>", "<p>&lt;script&gt;alert(1)&lt;/script&gt;</p>\n"),
-            ("[a](javascript:alert(1)) [b](https://x.y)", "<p>a <a href=\"https://x.y\">b</a></p>\n"),
+            (
+                "[a](javascript:alert(1)) [b](https://x.y)",
+                "<p>a <a href=\"https://x.y\">b</a></p>\n",
+            ),
             ("![alt](https://x.y/z.png)", "<p>alt</p>\n"),
             ("# Big\n\n- one\n- two", "<p>Big</p>\n<ul>\n<li>one</li>\n<li>two</li>\n</ul>\n"),
         ];

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::data::{Agreement, Errors, Report, Results, Row};
+use crate::data::{Agreement, Cost, Errors, Report, Results, Row};
 use crate::write::drawing::Figures;
-use crate::write::faults::{of_row, faults};
+use crate::write::faults::of_row;
 use crate::write::number::{MISSING, count, number, optional, signed};
 use crate::write::tables;
 use crate::write::text::short;
@@ -47,6 +47,8 @@ struct Cell {
     key: String,
     is_fault: bool,
     is_text: bool,
+    /// Two numbers, on one line.
+    is_range: bool,
     starts: bool,
 }
 
@@ -57,6 +59,7 @@ impl Cell {
             text,
             is_fault: false,
             is_text: true,
+            is_range: false,
             starts: false,
         }
     }
@@ -79,9 +82,14 @@ impl Cell {
         Cell {
             text,
             // JavaScript's words for what is not finite.
-            key: if key.is_finite() { format!("{key:?}") } else { format!("{key}").replace("inf", "Infinity") },
+            key: if key.is_finite() {
+                format!("{key:?}")
+            } else {
+                format!("{key}").replace("inf", "Infinity")
+            },
             is_fault: !key.is_finite(),
             is_text: false,
+            is_range: false,
             starts: false,
         }
     }
@@ -96,6 +104,9 @@ struct Columns(Vec<Column>, Vec<(&'static str, usize)>);
 
 impl Columns {
     fn group(&mut self, name: &'static str, columns: &[(&str, &'static str, bool)]) -> &mut Self {
+        if columns.is_empty() {
+            return self;
+        }
         self.1.push((name, columns.len()));
         for (index, (column, title, is_text)) in columns.iter().enumerate() {
             self.0.push(Column {
@@ -156,7 +167,8 @@ pub fn overview(report: &Report, figures: &[Figures]) -> Table {
         };
         let mut faults = Cell::count(found);
         faults.is_fault = found > 0;
-        let frontier = results.rows.iter().filter(|row| !row.dominated).count();
+        let has_place = |row: &&Row| !row.executed.mean.is_nan() && row.model.as_ref().is_none_or(|model| !model.rms.is_nan());
+        let frontier = results.rows.iter().filter(|row| !row.dominated).filter(has_place).count();
         Line {
             name: results.name.clone(),
             link: format!("x-{}", figures.name),
@@ -172,8 +184,7 @@ pub fn overview(report: &Report, figures: &[Figures]) -> Table {
             ],
         }
     });
-    let found = faults(report).len();
-    let caption = format!("{}, {}", count(report.experiments.len(), "experiment"), count(found, "fault"));
+    let caption = count(report.experiments.len(), "experiment");
     let lines = lines.collect();
     columns.table(caption, lines)
 }
@@ -192,13 +203,21 @@ pub fn errors(results: &Results) -> Table {
                 ("searched", "Largest that a search found", false),
             ],
         )
-        .group("Rounding, device", &[("RMS", "f32 on the device against double precision", false), ("max", "", false)])
-        .group("Rounding, evaluator", &[("RMS", "f32 on the CPU, the same everywhere", false), ("max", "", false)])
+        .group(
+            "Rounding, device",
+            &[("RMS", "f32 on the device against double precision", false), ("max", "", false)],
+        )
+        .group(
+            "Rounding, evaluator",
+            &[("RMS", "f32 on the CPU, the same everywhere", false), ("max", "", false)],
+        )
         .group("WGSL", &[("allows", "Largest relative error that a driver may make", false)])
         .group("", &[("verdict", "", true)]);
     let lines = results.rows.iter().map(|row| {
         let model = row.model.as_ref();
-        let mut cells: Vec<Cell> = [model.map(|one| one.rms), model.map(|one| one.p95), model.map(|one| one.max)].map(Cell::optional).into();
+        let mut cells: Vec<Cell> = [model.map(|one| one.rms), model.map(|one| one.p95), model.map(|one| one.max)]
+            .map(Cell::optional)
+            .into();
         cells.push(model.map_or_else(|| Cell::optional(None), |one| Cell::shown(signed(one.bias), one.bias)));
         cells.push(Cell::optional(model.map(|one| one.searched)));
         let two = |errors: Option<&Errors>| [errors.map(|one| one.rms), errors.map(|one| one.max)].map(Cell::optional);
@@ -228,8 +247,11 @@ fn verdict(results: &Results, row: &Row) -> Cell {
 
 /// What the rows of one experiment cost.
 pub fn costs(results: &Results) -> Table {
-    let names = tables::costs(&crate::data::Cost::default()).map(|(name, _)| name.replace('_', " "));
-    let holds: Vec<(&str, &'static str, bool)> = names.iter().map(|name| (name.as_str(), "", false)).collect();
+    let counts: Vec<_> = results.rows.iter().map(|row| tables::costs(&row.cost)).collect();
+    let names = tables::costs(&Cost::default()).map(|(name, _)| name.replace('_', " "));
+    // What no row has would only be wide.
+    let used: Vec<usize> = (0..names.len()).filter(|kind| counts.iter().any(|row| row[*kind].1 > 0)).collect();
+    let holds: Vec<(&str, &'static str, bool)> = used.iter().map(|kind| (names[*kind].as_str(), "", false)).collect();
     let mut columns = Columns(Vec::new(), Vec::new());
     columns
         .group(
@@ -252,15 +274,19 @@ pub fn costs(results: &Results) -> Table {
         .group("The linked program holds", &holds);
     let lines = results.rows.iter().map(|row| {
         let executed = &row.executed;
-        let mut cells: Vec<Cell> = [executed.mean, executed.max, executed.trips, executed.texture].map(Cell::number).into();
+        let mut cells: Vec<Cell> = [executed.mean, executed.max, executed.trips, executed.texture]
+            .map(Cell::number)
+            .into();
         cells.push(Cell::optional(row.time.map(|time| time.median)));
         let spread = row.time.map(|time| Cell {
             is_text: true,
+            is_range: true,
             ..Cell::shown(format!("{} to {}", number(time.p10), number(time.p90)), time.p10)
         });
         cells.push(spread.unwrap_or_else(|| Cell::optional(None)));
         cells.push(Cell::optional(row.time.map(|time| time.nanoseconds)));
-        cells.extend(tables::costs(&row.cost).map(|(_, count)| Cell::count(count as usize)));
+        let counts = tables::costs(&row.cost);
+        cells.extend(used.iter().map(|kind| Cell::count(counts[*kind].1 as usize)));
         line(results, row, cells)
     });
     let caption = match results.baseline.as_str() {
@@ -282,7 +308,11 @@ pub fn agreement(all: &[Agreement]) -> Table {
             ("equal", "Bit for bit the same", false),
             ("outside", "Farther off than WGSL allows", false),
             ("undecided", "A branch hangs on a rounding, so anything goes", false),
-            ("largest, ulp", "Largest difference of those inside, in units in the last place", false),
+            (
+                "largest, ulp",
+                "Largest difference of those inside, in units in the last place",
+                false,
+            ),
         ],
     );
     let lines = all.iter().map(|one| {
@@ -314,5 +344,9 @@ pub fn agreement(all: &[Agreement]) -> Table {
 /// `99.97 %`; never 100 where some are missing.
 fn percent(part: f64) -> String {
     let text = format!("{:.2}", part * 100.0);
-    if part < 1.0 && text == "100.00" { "99.99 %".to_owned() } else { format!("{text} %") }
+    if part < 1.0 && text == "100.00" {
+        "99.99 %".to_owned()
+    } else {
+        format!("{text} %")
+    }
 }

@@ -1,0 +1,162 @@
+//! Device against evaluator: every function of every module that can be probed, on the device and on the CPU with what the WGSL
+//! specification allows of it.
+
+// A helper that fails is a test that fails.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod rows;
+
+use std::fmt::Write as _;
+
+use common::{catalog, gpu};
+use serde_json::Value as Json;
+use shadewright::compiler::diagnostics::codes;
+use shadewright::compiler::manifest::{Arity, Filling, Node};
+use shadewright::compiler::{Module, Recipe, Report};
+use shadewright::evaluate::{Allowed, Number};
+use shadewright::runtime::gpu::RuntimeError;
+use shadewright::runtime::gpu::pipeline::Pipelines;
+use shadewright::runtime::probe::Probe;
+
+/// Rows of each function.
+const ROWS: usize = 400;
+
+/// A module with its slots' defaults; slots that need a module and have no default get the first that fits.
+fn alone(module: &Module, depth: usize) -> Node {
+    let mut node = Node::new(format!("{}/{}", module.category, module.name));
+    for (name, slot) in &module.manifest.slots {
+        if slot.arity == Arity::Single && slot.default.is_none() && depth < 8 {
+            let first = catalog()
+                .modules()
+                .find(|known| known.category == slot.interface)
+                .expect("a module that fits");
+            node.fill.insert(name.clone(), Filling::One(alone(first, depth + 1)));
+        }
+    }
+    node
+}
+
+/// What is compared of a function.
+#[derive(Default)]
+struct Agreement {
+    results: usize,
+    equal: usize,
+    /// A branch hangs on a rounding.
+    undecided: usize,
+    /// The specification allows anything.
+    open: usize,
+    outside: usize,
+    ulps: f64,
+    worst: String,
+}
+
+impl Agreement {
+    /// Compares the device's numbers with what is allowed.
+    fn compare(&mut self, row: &Json, names: &[String], device: &[f64], allowed: &[Allowed], undecided: bool) {
+        assert_eq!(device.len(), allowed.len());
+        for ((got, expected), name) in device.iter().zip(allowed).zip(names) {
+            self.results += 1;
+            let (got, value) = (*got as f32, expected.value());
+            self.equal += usize::from(got.to_bits() == value.to_bits() || got == value || got.is_nan() && value.is_nan());
+            if undecided {
+                self.undecided += 1;
+            } else if !expected.is_bounded() {
+                self.open += 1;
+            } else if !expected.allows(got) {
+                self.outside += 1;
+                let _ = writeln!(
+                    self.worst,
+                    "{row} .{name}: {got:?} is not in {:?} to {:?} around {value:?}",
+                    expected.low(),
+                    expected.high()
+                );
+            } else {
+                let step = f64::from(value.abs().next_up() - value.abs());
+                self.ulps = self.ulps.max((f64::from(got) - f64::from(value)).abs() / step);
+            }
+        }
+    }
+}
+
+/// A function that only fragments can call.
+fn only_for_fragments(report: &Report) -> bool {
+    report.diagnostics.iter().all(|diagnostic| diagnostic.code == codes::WRONG_STAGE)
+}
+
+/// Catches a driver or an evaluator that computes something else: a wrong operation, a wrong operand, a bound that is too narrow;
+/// and an evaluator that gets out of it by calling everything undecided.
+#[test]
+fn every_function_is_within_what_wgsl_allows() {
+    let pipelines = Pipelines::new(&gpu(), None);
+    let (mut table, mut wrong, mut skipped) = (String::new(), String::new(), Vec::new());
+    let (mut functions, mut results, mut open) = (0, 0, 0);
+    for module in catalog().modules() {
+        let recipe = Recipe::from(alone(module, 0));
+        for function in catalog().functions(&module.category).expect("an interface").keys() {
+            let name = format!("{}/{} {function}", module.category, module.name);
+            let probe = match Probe::new(catalog(), &recipe, function) {
+                Err(RuntimeError::Compile(report)) if only_for_fragments(&report) => {
+                    skipped.push(format!("{name}: takes derivatives, which only a fragment has"));
+                    continue;
+                }
+                probe => probe.unwrap_or_else(|error| panic!("{name}: {error}")),
+            };
+            let rows = rows::rows(probe.program().reflection(), probe.input().map(|(_, layout)| layout), ROWS);
+            let inputs = probe.table(&rows).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let device = probe
+                .on_gpu(&pipelines, &gpu(), &inputs)
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+            let allowed = probe.on_cpu::<Allowed>(&inputs).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let single = probe.on_cpu::<f32>(&inputs).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let mut found = Agreement::default();
+            for (i, row) in rows.iter().enumerate() {
+                found.compare(row, &probe.components(), &device[i], &allowed.values[i], allowed.undecided[i]);
+                // The value beside the bounds is f32's.
+                let same = single.values[i]
+                    .iter()
+                    .zip(&allowed.values[i])
+                    .all(|(s, a)| s.to_bits() == a.to_f32().to_bits());
+                assert!(same, "{name}: {row}");
+            }
+            let _ = writeln!(
+                table,
+                "{name:<44} {:>6} {:>6} {:>6} {:>6} {:>6} {:>9.1}",
+                found.results, found.equal, found.undecided, found.open, found.outside, found.ulps
+            );
+            functions += 1;
+            results += found.results;
+            open += found.undecided + found.open;
+            if found.outside > 0 {
+                let _ = writeln!(
+                    wrong,
+                    "{name}: {} outside\n{}",
+                    found.outside,
+                    found.worst.lines().take(3).collect::<Vec<_>>().join("\n")
+                );
+            }
+            let share = (found.undecided + found.open) as f64 / found.results as f64;
+            if share > 0.3 {
+                let _ = writeln!(wrong, "{name}: {:.0} % undecided", share * 100.0);
+            }
+        }
+    }
+    println!(
+        "{} on {}\n{:<44} {:>6} {:>6} {:>6} {:>6} {:>6} {:>9}\n{table}",
+        functions,
+        gpu().name(),
+        "function",
+        "number",
+        "equal",
+        "undec.",
+        "open",
+        "outs.",
+        "ulps"
+    );
+    skipped.iter().for_each(|skip| println!("skipped {skip}"));
+    assert!(wrong.is_empty(), "{wrong}");
+    assert_eq!(skipped.len(), 3, "{skipped:?}");
+    assert!(functions >= 18, "only {functions} functions");
+    assert!(open as f64 <= 0.05 * results as f64, "{open} of {results} undecided");
+}
