@@ -190,6 +190,11 @@ fn constant_loops_are_counted() {
     assert_eq!(trips("; j < 5; j++", "var j = 0; if n > 1 { j = 2; }", ""), [(None, false)]);
     assert_eq!(trips("; j < 5; j++", "var j = 0; touch(&j);", ""), [(None, false)]);
     assert_eq!(trips("; j < 5; j++", "var j = 0;", ""), [(Some(5), false)]);
+    assert_eq!(trips("; j < 5; j++", "var j = 0; j = 2;", "j += 1;"), [(None, false)]);
+    assert_eq!(trips("; j < 5; j++", "var j = 0; j = 2; if n > 1 { j = 3; }", ""), [(None, false)]);
+    // An exit that says when to leave, not when to stay.
+    let leaving = analysis("fn f() -> f32 { var i = 1; loop { if i > 5 { break; } continuing { i += 2; } } return 1.0; }");
+    assert_eq!(leaving.loops[0].trips, Some(3));
 }
 
 /// Catches a body that counts with its trips where it should count once, and the other way round; and nested loops that are not multiplied,
