@@ -6,7 +6,9 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod hostile;
 mod rows;
+mod snippets;
 
 use std::fmt::Write as _;
 
