@@ -193,7 +193,11 @@ fn the_compiler_touches_nothing_outside() {
         "SystemTime",
     ];
     let mut wrong = Vec::new();
-    let sources = [files(&root().join("compiler/src"), ".rs"), files(&root().join("compiler/evaluate/src"), ".rs")].concat();
+    let sources = [
+        files(&root().join("compiler/src"), ".rs"),
+        files(&root().join("compiler/evaluate/src"), ".rs"),
+    ]
+    .concat();
     assert!(!sources.is_empty());
     for path in sources {
         for (number, line) in code(&path) {

@@ -16,7 +16,13 @@ fn surface(at: &At) -> Vec<f64> {
         numbers.extend(vector.to_array());
     }
     // The constant as the shader has it, in 32 bits.
-    numbers.push(at.param("roughness").powi(2).max(f64::from(1e-4_f32)));
+    let alpha = at.param("roughness").powi(2).max(f64::from(1e-4_f32));
+    numbers.push(alpha);
+    // The tangent as interpolated, made orthogonal to the normal.
+    let along = at.vector("at.tangent");
+    let tangent = (along - normal * normal.dot(along)).normalize();
+    numbers.extend(tangent.to_array());
+    numbers.extend([alpha; 2]);
     numbers.extend(emission.to_array());
     numbers.push(at.param("opacity"));
     numbers

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::text::replay;
-use crate::data::{Agreement, Errors, Report, Results, Row, Worst};
+use crate::data::{Agreement, Report, Results, Row, Worst};
 
 /// What happened, the worst first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
