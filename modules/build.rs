@@ -25,11 +25,40 @@ fn main() -> Result<(), Box<dyn Error>> {
         writeln!(table, "    ({name:?}, include_str!({:?})),", path.display().to_string())?;
     }
     table.push(']');
-    fs::write(PathBuf::from(env::var("OUT_DIR")?).join("files.rs"), table)?;
+    let out = PathBuf::from(env::var("OUT_DIR")?);
+    fs::write(out.join("files.rs"), table)?;
+    fs::write(out.join("truths.rs"), truths(&root)?)?;
 
     // A folder is watched with all that is in it, so new and removed modules are noticed as well.
     println!("cargo::rerun-if-changed={}", root.display());
     Ok(())
+}
+
+/// Rust that declares the `truth.rs` of every folder as a module, and the table of them all, sorted by folder.
+fn truths(root: &Path) -> Result<String, Box<dyn Error>> {
+    let mut folders = Vec::new();
+    for category in folders_with(root, "category.ron")? {
+        folders.extend(folders_with(&category, "module.ron")?);
+        folders.push(category);
+    }
+    folders.retain(|folder| folder.join("truth.rs").is_file());
+    let mut named = Vec::new();
+    for folder in folders {
+        let parts: Vec<_> = folder
+            .strip_prefix(root)?
+            .components()
+            .map(|c| c.as_os_str().to_string_lossy().into_owned())
+            .collect();
+        named.push((parts.join("/"), folder.join("truth.rs")));
+    }
+    named.sort();
+    let mut text = String::new();
+    let mut table = String::from("pub(super) static ALL: &[(&str, &[(&str, super::Truth)])] = &[\n");
+    for (index, (name, path)) in named.iter().enumerate() {
+        writeln!(text, "#[path = {:?}]\nmod of_{index};", path.display().to_string())?;
+        writeln!(table, "    ({name:?}, of_{index}::TRUTHS),")?;
+    }
+    Ok(text + &table + "];\n")
 }
 
 /// Folders directly in `folder` that hold the file `marker`.

@@ -14,12 +14,13 @@
 //! A choice is made by linking another function, never by an `if`: what a shader doesn't need is not in it. No function, type,
 //! binding, interpolant or parameter is there that the entry points don't reach.
 //!
-//! This crate is the facade over four; the compiler and the evaluator know none of the others, the rest those before them:
+//! This crate is the facade over five; the compiler and the evaluator know none of the others, the rest those before them:
 //!
 //! - [`compiler`]: declarations and WGSL to a validated module, its reflection and its text. No GPU, no files.
-//! - [`evaluate`]: a validated module on the CPU, in f32, f64, or with all that WGSL allows a driver.
+//! - [`evaluate`]: a validated module on the CPU, in f32, f64, or with all that WGSL allows a driver; and what it costs.
 //! - [`modules`]: the standard library, embedded.
 //! - [`runtime`]: wgpu. Scenes to recipes, pipelines, passes, and an HDR frame in physical units.
+//! - [`report`]: experiments on modules, speed against error.
 //!
 //! ```
 //! use shadewright::compiler::{Catalog, Recipe};
@@ -38,4 +39,5 @@
 pub use shadewright_compiler as compiler;
 pub use shadewright_evaluate as evaluate;
 pub use shadewright_modules as modules;
+pub use shadewright_report as report;
 pub use shadewright_runtime as runtime;

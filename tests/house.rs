@@ -13,6 +13,16 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// Folders of what is shipped.
+const SOURCES: &[&str] = &[
+    "compiler/src",
+    "compiler/evaluate/src",
+    "modules/src",
+    "runtime/src",
+    "runtime/report/src",
+    "src",
+];
+
 fn cargo(arguments: &[&str]) -> String {
     let output = Command::new(env!("CARGO"))
         .args(arguments)
@@ -123,7 +133,7 @@ fn the_arrows_go_one_way() {
 /// Catches a GPU that creeps into the compiler or the modules through some dependency's feature.
 #[test]
 fn the_compiler_has_no_gpu() {
-    for package in ["shadewright-compiler", "shadewright-modules"] {
+    for package in ["shadewright-compiler", "shadewright-evaluate", "shadewright-modules"] {
         let tree = cargo(&[
             "tree",
             "--package",
@@ -183,7 +193,11 @@ fn the_compiler_touches_nothing_outside() {
         "SystemTime",
     ];
     let mut wrong = Vec::new();
-    let sources = files(&root().join("compiler/src"), ".rs");
+    let sources = [
+        files(&root().join("compiler/src"), ".rs"),
+        files(&root().join("compiler/evaluate/src"), ".rs"),
+    ]
+    .concat();
     assert!(!sources.is_empty());
     for path in sources {
         for (number, line) in code(&path) {
@@ -211,6 +225,8 @@ const HOMONYMS: &[(&str, &str, &str)] = &[
     ("runtime/src", "display", "the scene's field, and the frame's image"),
     ("runtime/src", "forward", "a member of the interface's struct for views"),
     ("runtime/src", "perspective", "a member of the same"),
+    ("runtime/report/src", "hard", "a field of experiments"),
+    ("runtime/report/src", "light", "a colour of the page's theme"),
 ];
 
 /// Catches a compiler that knows a category or module by its name instead of by what it declares, and a runtime that knows a module.
@@ -226,7 +242,12 @@ fn nobody_knows_a_module_by_name() {
     let all: BTreeSet<String> = modules.union(&categories).cloned().collect();
     let mut wrong = Vec::new();
     // Scenes have lights and materials, so the runtime knows what these categories are for; the compiler knows none.
-    for (folder, names) in [("compiler/src", &all), ("runtime/src", &modules)] {
+    for (folder, names) in [
+        ("compiler/src", &all),
+        ("compiler/evaluate/src", &all),
+        ("runtime/src", &modules),
+        ("runtime/report/src", &all),
+    ] {
         for path in files(&root().join(folder), ".rs") {
             for (number, line) in code(&path) {
                 for name in names {
@@ -255,7 +276,7 @@ fn codes(text: &str) -> BTreeSet<String> {
 fn every_code_is_listed() {
     let listed = codes(&read(&root().join("spec/diagnostics.md")));
     let mut used = BTreeSet::new();
-    for folder in ["compiler/src", "modules/src", "runtime/src", "src"] {
+    for folder in SOURCES {
         for path in files(&root().join(folder), ".rs") {
             for (_, line) in code(&path) {
                 used.extend(codes(&line));
@@ -338,7 +359,7 @@ fn every_module_is_a_whole_folder() {
 fn no_file_is_a_heap() {
     let mut wrong = Vec::new();
     for (folders, ending, most) in [
-        (&["compiler/src", "modules/src", "runtime/src", "src"][..], ".rs", 520),
+        (SOURCES, ".rs", 520),
         (&["compiler/tests", "modules/tests", "runtime/tests", "tests"][..], ".rs", 800),
         (&["modules"][..], ".wgsl", 250),
     ] {

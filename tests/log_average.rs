@@ -4,12 +4,11 @@
 #![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod common;
-mod oracle;
 
 use common::{catalog, gpu};
 use glam::DVec3;
-use oracle::display::{log_average, luminance};
 use shadewright::compiler::{Program, Recipe};
+use shadewright::modules::oracles::display::{log_average, luminance};
 use shadewright::runtime::wgpu::{self, util::DeviceExt};
 
 /// Bytes of the module's buffer; the mean is behind 256 partial sums.

@@ -5,17 +5,16 @@
 #![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod common;
-mod oracle;
 
 use common::probe;
 use glam::DVec3;
 use indexmap::IndexMap;
-use oracle::quadrature::{direction, hemisphere};
-use oracle::{display, lights, reflection, shadows};
 use serde_json::{Value as Json, json};
 use shadewright::compiler::Library;
 use shadewright::compiler::manifest::{ModuleManifest, Node, ParamMode, Value};
 use shadewright::modules::cases::{self, Case, Expected};
+use shadewright::modules::oracles::quadrature::{direction, hemisphere};
+use shadewright::modules::oracles::{display, lights, reflection, shadows};
 use shadewright::modules::{Embedded, library};
 
 /// A number as the device gets it.

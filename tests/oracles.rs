@@ -1,15 +1,13 @@
 //! Pins the double-precision oracles to published values and to identities, so that the modules are compared with the right thing.
 
-mod oracle;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec3, DVec4};
-use oracle::display::*;
-use oracle::lights::*;
-use oracle::quadrature::{direction, hemisphere, nodes};
-use oracle::reflection::*;
-use oracle::shadows::*;
+use shadewright::modules::oracles::display::*;
+use shadewright::modules::oracles::lights::*;
+use shadewright::modules::oracles::quadrature::{direction, hemisphere, nodes};
+use shadewright::modules::oracles::reflection::*;
+use shadewright::modules::oracles::shadows::*;
 
 /// Asserts a relative difference.
 #[track_caller]

@@ -2,14 +2,17 @@
 
 mod load;
 mod reload;
+mod signature;
 mod variants;
 
-use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use indexmap::IndexMap;
 use naga::valid::Capabilities;
+use rustc_hash::FxHashMap as HashMap;
+
+pub use signature::Signature;
 
 use crate::contracts;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
@@ -54,6 +57,8 @@ pub struct Catalog {
     library: Arc<dyn Library>,
     categories: IndexMap<String, Arc<Category>>,
     modules: Vec<Arc<Module>>,
+    /// Modules by their names without category, in their order.
+    by_name: HashMap<String, Vec<usize>>,
     interfaces: Mutex<HashMap<String, Arc<Interface>>>,
     interface_units: Mutex<HashMap<String, Arc<Unit>>>,
     /// How many texts it has parsed.
@@ -81,6 +86,7 @@ impl Catalog {
         let catalog = Self {
             library,
             categories,
+            by_name: by_name(&modules),
             modules,
             interfaces: Mutex::default(),
             interface_units: Mutex::default(),
@@ -123,10 +129,10 @@ impl Catalog {
     }
 
     /// The module that a node of a recipe names, for a slot (interface and slot name) or as a root.
-    pub(crate) fn module_at(&self, name: &str, slot: Option<(&str, &str)>, place: &Place) -> Result<Arc<Module>, Report> {
+    pub(crate) fn module_at(&self, name: &str, slot: Option<(&str, &str)>, place: impl FnOnce() -> Place) -> Result<Arc<Module>, Report> {
         self.find(name, slot).map(Arc::clone).map_err(|mut diagnostic| {
             // The first place is the primary one: where the name was written.
-            let file = Arc::clone(&place.file);
+            let place = place();
             let text = if diagnostic.code == codes::WRONG_CATEGORY {
                 "does not fit here"
             } else {
@@ -135,8 +141,8 @@ impl Catalog {
             diagnostic.labels.insert(
                 0,
                 crate::diagnostics::Label {
-                    file,
                     span: place.name_span(),
+                    file: place.file,
                     text: text.to_owned(),
                 },
             );
@@ -149,12 +155,12 @@ impl Catalog {
             Some((category, short)) => (Some(category), short),
             None => (None, name),
         };
-        let all: Vec<&Arc<Module>> = self
-            .modules
-            .iter()
-            .filter(|m| m.name == short && category.is_none_or(|c| c == m.category))
-            .collect();
+        let named = self.by_name.get(short).into_iter().flatten();
+        let all = named
+            .map(|&index| &self.modules[index])
+            .filter(|m| category.is_none_or(|c| c == m.category));
         let Some((interface, slot)) = slot else {
+            let all: Vec<_> = all.collect();
             return match all[..] {
                 [] => Err(self.unknown(name, None)),
                 [one] => Ok(one),
@@ -167,10 +173,10 @@ impl Catalog {
                 }
             };
         };
-        if let Some(module) = all.iter().find(|m| m.category == interface) {
+        if let Some(module) = all.clone().find(|m| m.category == interface) {
             return Ok(module);
         }
-        match all.first() {
+        match all.clone().next() {
             None => Err(self.unknown(name, Some(interface))),
             Some(other) => {
                 let fits = self.fits(interface);
@@ -275,9 +281,13 @@ impl Catalog {
     }
 
     /// A module, parsed with these constants.
-    pub(crate) fn unit(&self, module: &Arc<Module>, constants: &IndexMap<String, (Value, Typed)>) -> Result<Arc<Unit>, Report> {
-        let key = Variants::key(constants);
-        if let Some(done) = module.variants.get(&key) {
+    pub(crate) fn unit(
+        &self,
+        module: &Arc<Module>,
+        constants: &IndexMap<String, (Value, Typed)>,
+        variant: &Constants,
+    ) -> Result<Arc<Unit>, Report> {
+        if let Some(done) = module.variants.get(variant) {
             return Ok(done);
         }
         let path = format!("{0}/{1}/{1}.wgsl", module.category, module.name);
@@ -291,7 +301,7 @@ impl Catalog {
             }
         };
         let unit = Arc::new(self.parse_module(module, file, constants)?);
-        Ok(module.variants.insert(key, unit))
+        Ok(module.variants.insert(variant.clone(), unit))
     }
 
     /// Parses a module's text.
@@ -358,10 +368,18 @@ impl Catalog {
         for (name, param) in module.manifest.params.iter().filter(|(_, p)| p.mode == ParamMode::Constant) {
             constants.insert(name.clone(), (param.default.clone(), default_of(module, name, param)?));
         }
-        let unit = self.unit(module, &constants)?;
+        let unit = self.unit(module, &constants, &Variants::key(&constants))?;
         crate::resolve::check_resources(module, &unit)?;
         contracts::module_references(self, module, &unit)
     }
+}
+
+fn by_name(modules: &[Arc<Module>]) -> HashMap<String, Vec<usize>> {
+    let mut by_name: HashMap<String, Vec<usize>> = HashMap::default();
+    for (index, module) in modules.iter().enumerate() {
+        by_name.entry(module.name.clone()).or_default().push(index);
+    }
+    by_name
 }
 
 fn needs(module: &Module, constants: &IndexMap<String, (Value, Typed)>) -> Result<Needs, Report> {

@@ -174,7 +174,7 @@ pub fn module_references(catalog: &Catalog, module: &Module, unit: &Unit) -> Res
 
 /// A tree that stands in a manifest. A recipe may fill what it leaves open, and stands around it.
 fn subtree(catalog: &Catalog, node: &Node, slot: Option<(&str, &str)>, place: &Place) -> Result<(), Report> {
-    let module = catalog.module_at(&node.module, slot, place)?;
+    let module = catalog.module_at(&node.module, slot, || place.clone())?;
     match resolve_root(catalog, module, node, place.clone()) {
         Err(report) if !matches!(report.diagnostics[0].code, codes::MISSING_FILLING | codes::RULE_BROKEN) => Err(report),
         _ => Ok(()),

@@ -56,9 +56,9 @@ impl Catalog {
     }
 
     fn add_tree(&self, key: &mut Key, reached: &mut Reached, tree: &Tree) -> Result<(), Report> {
-        for node in &tree.nodes {
+        for (index, node) in tree.nodes.iter().enumerate() {
             let module = &node.module;
-            key.text(&node.path);
+            key.text(&tree.path(index));
             key.text(&module.category);
             key.text(&module.name);
             key.text(node.label.as_deref().unwrap_or_default());
@@ -81,7 +81,7 @@ impl Catalog {
                 // Slots that the pass inherits are filled from this tree, which is in the key already.
                 if let PassDecl::Draw { root, .. } = declared {
                     let place = Place::new(&module.source).keys(&["passes", own, "root"]);
-                    let root_module = self.module_at(&root.module, None, &place)?;
+                    let root_module = self.module_at(&root.module, None, || place.clone())?;
                     self.add_tree(key, reached, &resolve_root(self, root_module, root, place)?)?;
                 }
             }

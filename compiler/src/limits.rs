@@ -26,6 +26,8 @@ pub const TREE_DEPTH: usize = 32;
 pub const INSTANCES: usize = 1024;
 /// Most sets of constants for which a module's parsed text is kept; the oldest goes then, and is parsed again when it is needed.
 pub const VARIANTS: usize = 64;
+/// Most forms of a function, with this or that of it dead, that are kept for the next permutation; the oldest goes then.
+pub const TEMPLATES: usize = 8;
 
 /// Checks a file's size.
 ///

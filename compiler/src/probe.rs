@@ -27,7 +27,7 @@ impl Catalog {
     /// As for [`Catalog::compile`]; the root's interface has no such function, or one with arguments that no buffer holds.
     pub fn compile_probe(&self, recipe: &Recipe, function: &str) -> Result<Program, Report> {
         let place = Place::new(&recipe.source);
-        let root = self.module_at(&recipe.root.module, None, &place)?;
+        let root = self.module_at(&recipe.root.module, None, || place.clone())?;
         let interface = self.interface(&root.category)?;
         let offers = &interface.category.manifest.offers;
         let functions: Vec<&Item> = interface

@@ -65,11 +65,11 @@ impl Program {
     /// The tree of the recipe as it was resolved, defaults included: a line a module with its slot path.
     pub fn tree(&self) -> impl Iterator<Item = TreeLine<'_>> {
         self.plan.tree.nodes.iter().enumerate().map(|(index, node)| TreeLine {
-            path: &node.path,
+            path: self.plan.tree.path(index),
             module: &node.module.name,
             category: &node.module.category,
             instance: &self.plan.instances.list[self.plan.instances.of_node[index]].name,
-            because: node.place.text(),
+            because: self.plan.tree.place(index).text(),
         })
     }
 }
@@ -78,7 +78,7 @@ impl Program {
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct TreeLine<'p> {
     /// Slot path: `main`, `main.brdf.ndf`, `main.lights[1]`.
-    pub path: &'p str,
+    pub path: String,
     /// Module.
     pub module: &'p str,
     /// Its category.
@@ -187,7 +187,7 @@ impl Catalog {
                     }
                 }
                 let place = Place::new(&node.module.source).keys(&["passes", own, "root"]);
-                let module = self.module_at(&root.module, None, &place)?;
+                let module = self.module_at(&root.module, None, || place.clone())?;
                 let declaring = tree.nodes.iter().map(|node| Arc::clone(&node.module)).collect();
                 let tree = resolve_root(self, module, &root, place)?;
                 let instances = Instances::find(self, &tree);

@@ -137,8 +137,9 @@ fn item(plan: &Plan, wgsl: &str, name: &str, home: usize, own: &str) -> Option<W
 fn answer(plan: &Plan, name: &str, kind: &str, home: usize, path: Vec<String>) -> Why {
     let (module, place, because) = match plan.homes[home].instance {
         Some(instance) => {
-            let node = &plan.tree.nodes[plan.instances.list[instance].node];
-            (node.module.name.clone(), node.path.clone(), node.place.text())
+            let node = plan.instances.list[instance].node;
+            let module = plan.tree.nodes[node].module.name.clone();
+            (module, plan.tree.path(node), plan.tree.place(node).text())
         }
         None => {
             let unit = &plan.homes[home].unit;

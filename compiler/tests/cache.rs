@@ -88,6 +88,26 @@ fn they_are_the_same_in_every_thread_and_order() {
     assert_eq!(distinct.len(), 2 * all.len());
 }
 
+/// Catches a form of a function, kept of one permutation, that another one is given although more or less of it is alive there.
+#[test]
+fn a_permutation_is_the_same_whatever_was_linked_before() {
+    let texts = standard();
+    let all: Vec<Recipe> = recipes().values().map(|text| recipe(text)).collect();
+    let ir = |catalog: &Catalog, recipe: &Recipe| {
+        let program = catalog.compile(recipe, "main").unwrap_or_else(|report| panic!("{report}"));
+        format!("{:?}", program.validated().module())
+    };
+    let alone: Vec<String> = all.iter().map(|recipe| ir(&load(texts.clone()), recipe)).collect();
+    let shared = load(texts);
+    // Each after every other one.
+    for first in &all {
+        for (recipe, alone) in all.iter().zip(&alone) {
+            ir(&shared, first);
+            assert!(ir(&shared, recipe) == *alone, "{:?} after {:?}", recipe.root, first.root);
+        }
+    }
+}
+
 /// Catches a file that the compiler reads and the key forgets, so that a cache would give an old shader for a new text; and a key that
 /// changes with files that the recipe has nothing to do with.
 #[test]

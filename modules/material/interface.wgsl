@@ -24,6 +24,10 @@ struct Surface {
     f0: vec3f,
     /// GGX width: perceptual roughness squared, in (0, 1].
     alpha: f32,
+    /// Unit length, in the surface: along it an anisotropic surface has its first width.
+    tangent: vec3f,
+    /// Widths along the tangent and across it, each in (0, 1]. Isotropic surfaces have alpha in both.
+    widths: vec2f,
     /// Emitted radiance, cd/m2 per channel.
     emission: vec3f,
     /// Coverage in [0, 1].
@@ -32,5 +36,15 @@ struct Surface {
 
 /// The surface at a point. The neutral one is half-grey paper.
 fn surface(at: Fragment) -> Surface {
-    return Surface(at.position, at.normal, at.normal, vec3f(0.5), vec3f(0.04), 1.0, vec3f(0.0), 1.0);
+    var s: Surface;
+    s.position = at.position;
+    s.normal = at.normal;
+    s.geometric_normal = at.normal;
+    s.diffuse = vec3f(0.5);
+    s.f0 = vec3f(0.04);
+    s.alpha = 1.0;
+    s.tangent = frame_of(at.normal)[0];
+    s.widths = vec2f(1.0);
+    s.opacity = 1.0;
+    return s;
 }

@@ -12,3 +12,23 @@ fn unit_or(v: vec3f, fallback: vec3f) -> vec3f {
     let square = dot(v, v);
     return select(fallback, v * inverseSqrt(max(square, 1e-30)), square > 1e-30);
 }
+
+/// Columns tangent, bitangent and n of a right-handed orthonormal frame around the unit vector n. Duff et al. 2017, listing 3.
+fn frame_of(n: vec3f) -> mat3x3f {
+    let side = select(-1.0, 1.0, n.z >= 0.0);
+    let a = -1.0 / (side + n.z);
+    let b = n.x * n.y * a;
+    return mat3x3f(vec3f(1.0 + side * n.x * n.x * a, side * b, -side * n.x), vec3f(b, side + n.y * n.y * a, -n.y), n);
+}
+
+/// A direction around the unit vector n with the density cos / pi, for u uniform in [0, 1)^2. Malley's method (Shirley and Wang 1992).
+fn cosine_sample(n: vec3f, u: vec2f) -> vec3f {
+    let radius = sqrt(u.x);
+    let turn = 2.0 * PI * u.y;
+    return frame_of(n) * vec3f(radius * cos(turn), radius * sin(turn), sqrt(max(1.0 - u.x, 0.0)));
+}
+
+/// Density of `cosine_sample`, 1/sr; 0 below the horizon.
+fn cosine_pdf(n: vec3f, l: vec3f) -> f32 {
+    return max(dot(n, l), 0.0) * INV_PI;
+}

@@ -5,7 +5,8 @@
 //! - `module.ron`: its declaration ([`shadewright_compiler::manifest::ModuleManifest`]),
 //! - `<name>.wgsl`: its code, plain WGSL,
 //! - `README.md`: formula, source, domain and limits,
-//! - `cases.ron`: inputs with the values that they must give ([`cases`]).
+//! - `cases.ron`: inputs with the values that they must give ([`cases`]),
+//! - if it is compared with something: `<name>.experiment.ron`, and `truth.rs`, its closed form in double precision (feature `oracles`).
 //!
 //! The build script finds them by looking at the folders, so this crate has no list of modules.
 //!
@@ -23,6 +24,8 @@ pub mod build;
 pub mod cases;
 mod embedded;
 mod folder;
+#[cfg(feature = "oracles")]
+pub mod oracles;
 mod overlay;
 mod recorded;
 #[cfg(feature = "wesl")]

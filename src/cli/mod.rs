@@ -14,10 +14,12 @@ mod output;
 mod permutations;
 mod probe;
 mod render;
+mod report;
 mod show;
 mod text;
 mod timings;
 mod tree;
+mod watch;
 mod why;
 
 use std::path::PathBuf;
@@ -80,6 +82,8 @@ enum Command {
     Render(render::Options),
     /// Evaluates an interface function on the GPU over a table of inputs
     Probe(probe::Options),
+    /// Compares modules: speed against error, over experiments that the library declares
+    Report(report::Options),
     /// Makes the skeleton of a module's folder
     New(new::Options),
 }
@@ -134,6 +138,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Diff(options) => diff::run(&context(&arguments.modules)?, &options),
         Command::Permutations(options) => permutations::run(&context(&arguments.modules)?, &options),
         Command::Render(options) => render::run(context(&arguments.modules)?, &options),
+        Command::Report(options) => report::run(&context(&arguments.modules)?, &options),
         Command::Probe(options) => probe::run(&context(&arguments.modules)?, &options),
     }
 }

@@ -9,8 +9,8 @@ use shadewright::modules::{Folder, Overlay, library};
 use shadewright::runtime::frame::Renderer;
 use shadewright::runtime::scene::SceneFile;
 
-use crate::oracle::display::{log_average, luminance, reinhard_color, saturation_luminance, srgb_encode};
 use crate::view::{GPU, example, parse, read, set};
+use shadewright::modules::oracles::display::{log_average, luminance, reinhard_color, saturation_luminance, srgb_encode};
 
 /// A pass that shows the bits of the exposure's 32-bit float in the four channels of its image, and a material that emits a number given by
 /// its bits: what the standard library does not need, and what shows that a display pass is a module like any other.

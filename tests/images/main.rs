@@ -6,8 +6,6 @@ mod display;
 mod flags;
 mod hostile;
 mod maps;
-#[path = "../oracle/mod.rs"]
-mod oracle;
 mod plane;
 mod shadows;
 mod sphere;

@@ -7,9 +7,9 @@ use shadewright::compiler::manifest::Value;
 use shadewright::runtime::image::decode_exr;
 use shadewright::runtime::scene::SceneFile;
 
-use crate::oracle::lights::{Point, point_illuminance};
 use crate::support::good;
 use crate::view::{Picture, Pinhole, example, picture, read, set};
+use shadewright::modules::oracles::lights::{Point, point_illuminance};
 
 const SCENE: &str = "lambert-plane.scene.ron";
 

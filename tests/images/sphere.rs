@@ -5,8 +5,8 @@ use shadewright::compiler::manifest::Value;
 use shadewright::runtime::mesh::Mesh;
 use shadewright::runtime::scene::SceneFile;
 
-use crate::oracle::reflection::{Surface, microfacet};
 use crate::view::{Pinhole, frame, hdr, read, set};
+use shadewright::modules::oracles::reflection::{Surface, microfacet};
 
 const SCENE: &str = "ggx-sphere.scene.ron";
 const GOLD: [f64; 3] = [1.0, 0.766, 0.336];

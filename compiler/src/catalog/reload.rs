@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::load::{Declared, declared, read};
-use super::{Catalog, Module, lock};
+use super::{Catalog, Module, by_name, lock};
 use crate::contracts;
 use crate::diagnostics::Report;
 
@@ -22,6 +22,7 @@ impl Catalog {
             library: Arc::clone(&self.library),
             categories,
             modules: Vec::new(),
+            by_name: Default::default(),
             interfaces: Default::default(),
             interface_units: Default::default(),
             parsed: Default::default(),
@@ -35,6 +36,7 @@ impl Catalog {
                 *module = Arc::clone(before);
             }
         }
+        catalog.by_name = by_name(&modules);
         catalog.modules = modules;
         Report::unless_empty(contracts::unknown_interfaces(&catalog))?;
         Ok(catalog)

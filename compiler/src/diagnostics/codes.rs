@@ -110,6 +110,11 @@ codes! {
     SPACE_TOO_TANGLED = "SW1005", "A space whose rules tie together too much to be counted.";
     SPACE_UNCOUNTABLE = "SW1006", "A space with too many permutations to be numbered.";
     SPACE_EMPTY = "SW1007", "A space without a legal permutation.";
+
+    EXPERIMENT_INVALID = "SW1101", "An experiment says something that cannot be.";
+    BAD_INPUT_RANGE = "SW1102", "An input of an experiment whose range holds nothing, is not finite, or refers to an input that is not drawn before.";
+    UNKNOWN_TRUTH = "SW1103", "An experiment asks for the closed form of a folder that has none for the function.";
+    BASELINE_INVALID = "SW1104", "A baseline of errors and costs that cannot be read, or is of another form.";
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! Writing a plan as IR, by cloning the units' functions and patching what they refer to.
 
+use naga::diagnostic_filter::DiagnosticFilterNode;
 use naga::proc::Layouter;
 use naga::{Constant, EntryPoint, Expression, GlobalVariable, Handle, Module, Override, ResourceBinding, Span, Type};
 
 use crate::parse::Origin;
-use crate::plan::{Body, GROUPS, Plan};
+use crate::plan::{Body, GROUPS, Home, Plan, declaring};
 
 /// Links a plan to a module that nobody has validated yet.
 pub fn link(plan: &Plan) -> Module {
@@ -26,48 +27,60 @@ fn stage_order(stage: naga::ShaderStage) -> u8 {
     }
 }
 
-/// What of a home's unit is already in the output.
-#[derive(Default)]
+/// What of the homes' units is already in the output.
 pub(super) struct Copied {
     pub types: Map<Type>,
     pub constants: Map<Constant>,
     pub overrides: Map<Override>,
     pub expressions: Map<Expression>,
     pub globals: Map<GlobalVariable>,
-    pub filters: Map<naga::diagnostic_filter::DiagnosticFilterNode>,
+    pub filters: Map<DiagnosticFilterNode>,
 }
 
-/// From handles of a unit to those of the output.
-pub(super) struct Map<T>(Vec<Option<Handle<T>>>);
-
-impl<T> Default for Map<T> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
+/// From handles of the homes' units to those of the output.
+pub(super) struct Map<T> {
+    /// Where a home's handles begin.
+    starts: Vec<usize>,
+    done: Vec<Option<Handle<T>>>,
 }
 
 impl<T> Map<T> {
-    pub fn get(&self, handle: Handle<T>) -> Option<Handle<T>> {
-        *self.0.get(handle.index())?
+    /// `len` is the number of a unit's handles.
+    fn new(homes: &[Home], len: impl Fn(&Module) -> usize) -> Self {
+        let mut end = 0;
+        let ends = homes.iter().map(|home| {
+            end += len(&home.unit.ir);
+            end
+        });
+        let starts = std::iter::once(0).chain(ends).collect();
+        Self {
+            starts,
+            done: vec![None; end],
+        }
     }
 
-    pub fn insert(&mut self, handle: Handle<T>, done: Handle<T>) {
-        if self.0.len() <= handle.index() {
-            self.0.resize(handle.index() + 1, None);
-        }
-        self.0[handle.index()] = Some(done);
+    pub fn get(&self, home: usize, handle: Handle<T>) -> Option<Handle<T>> {
+        self.done[self.starts[home] + handle.index()]
+    }
+
+    pub fn insert(&mut self, home: usize, handle: Handle<T>, done: Handle<T>) {
+        self.done[self.starts[home] + handle.index()] = Some(done);
     }
 }
 
 pub(super) struct Linker<'p> {
     pub plan: &'p Plan,
     pub out: Module,
-    pub copied: Vec<Copied>,
+    pub copied: Copied,
     /// Linked functions by index in the plan.
     pub functions: Vec<Option<Handle<naga::Function>>>,
+    /// Linked structs by index in the plan.
+    pub structs: Vec<Option<Handle<Type>>>,
     /// Uniform blocks by index in the plan.
     pub blocks: Vec<Option<Handle<GlobalVariable>>>,
     pub layouter: Layouter,
+    /// What the form of the function at hand depends on.
+    pub alive: Vec<bool>,
 }
 
 impl<'p> Linker<'p> {
@@ -75,10 +88,19 @@ impl<'p> Linker<'p> {
         Self {
             plan,
             out: Module::default(),
-            copied: plan.homes.iter().map(|_| Copied::default()).collect(),
+            copied: Copied {
+                types: Map::new(&plan.homes, |ir| ir.types.len()),
+                constants: Map::new(&plan.homes, |ir| ir.constants.len()),
+                overrides: Map::new(&plan.homes, |ir| ir.overrides.len()),
+                expressions: Map::new(&plan.homes, |ir| ir.global_expressions.len()),
+                globals: Map::new(&plan.homes, |ir| ir.global_variables.len()),
+                filters: Map::new(&plan.homes, |ir| ir.diagnostic_filters.len()),
+            },
             functions: vec![None; plan.functions.len()],
+            structs: vec![None; plan.structs.list.len()],
             blocks: vec![None; plan.blocks.len()],
             layouter: Layouter::default(),
+            alive: Vec::new(),
         }
     }
 
@@ -90,14 +112,16 @@ impl<'p> Linker<'p> {
                 self.functions[index] = Some(self.out.functions.append(function, Span::default()));
             }
             Body::Function(handle) => {
-                let ir = &self.plan.homes[planned.home].unit.ir;
-                let span = self.span(planned.home, ir.functions.get_span(*handle));
-                let function = self.body(planned, &ir.functions[*handle]);
+                let unit = &self.plan.homes[planned.home].unit;
+                let span = self.span(planned.home, unit.ir.functions.get_span(*handle));
+                let function = self.body(planned, &unit.ir.functions[*handle], &unit.templates[handle.index()]);
                 self.functions[index] = Some(self.out.functions.append(function, span));
             }
             Body::Entry(entry) => {
-                let entry = &self.plan.homes[planned.home].unit.ir.entry_points[*entry];
-                let mut function = self.body(planned, &entry.function);
+                let unit = &self.plan.homes[planned.home].unit;
+                let templates = &unit.templates[unit.ir.functions.len() + entry];
+                let entry = &unit.ir.entry_points[*entry];
+                let mut function = self.body(planned, &entry.function, templates);
                 function.name.clone_from(&entry.function.name);
                 let workgroup_size_overrides = entry
                     .workgroup_size_overrides
@@ -117,7 +141,7 @@ impl<'p> Linker<'p> {
         }
     }
 
-    /// A span that also tells the home.
+    /// An item's span that also tells the home.
     pub fn span(&self, home: usize, span: Span) -> Span {
         let base = self.plan.homes[home].base;
         match span.to_range() {
@@ -132,7 +156,7 @@ impl<'p> Linker<'p> {
     }
 
     pub fn global_expression(&mut self, home: usize, handle: Handle<Expression>) -> Handle<Expression> {
-        if let Some(done) = self.copied[home].expressions.get(handle) {
+        if let Some(done) = self.copied.expressions.get(home, handle) {
             return done;
         }
         let ir = &self.plan.homes[home].unit.ir;
@@ -140,7 +164,7 @@ impl<'p> Linker<'p> {
         self.patch_global_expression(home, &mut expression);
         let span = self.span(home, ir.global_expressions.get_span(handle));
         let done = self.out.global_expressions.append(expression, span);
-        self.copied[home].expressions.insert(handle, done);
+        self.copied.expressions.insert(home, handle, done);
         done
     }
 
@@ -187,7 +211,7 @@ impl<'p> Linker<'p> {
 
     pub fn constant(&mut self, home: usize, handle: Handle<Constant>) -> Handle<Constant> {
         let (home, handle) = self.declaring_constant(self.plan.shared_home(home), handle);
-        if let Some(done) = self.copied[home].constants.get(handle) {
+        if let Some(done) = self.copied.constants.get(home, handle) {
             return done;
         }
         let ir = &self.plan.homes[home].unit.ir;
@@ -203,7 +227,7 @@ impl<'p> Linker<'p> {
             },
             span,
         );
-        self.copied[home].constants.insert(handle, done);
+        self.copied.constants.insert(home, handle, done);
         done
     }
 
@@ -230,7 +254,7 @@ impl<'p> Linker<'p> {
     }
 
     pub fn override_(&mut self, home: usize, handle: Handle<Override>) -> Handle<Override> {
-        if let Some(done) = self.copied[home].overrides.get(handle) {
+        if let Some(done) = self.copied.overrides.get(home, handle) {
             return done;
         }
         let ir = &self.plan.homes[home].unit.ir;
@@ -247,14 +271,19 @@ impl<'p> Linker<'p> {
             },
             span,
         );
-        self.copied[home].overrides.insert(handle, done);
+        self.copied.overrides.insert(home, handle, done);
         done
     }
 
     /// A module-scope variable other than `params`.
     pub fn global(&mut self, home: usize, handle: Handle<GlobalVariable>) -> Handle<GlobalVariable> {
-        let (home, handle) = crate::plan::declaring(self.plan, home, handle);
-        if let Some(done) = self.copied[home].globals.get(handle) {
+        if let Some(done) = self.copied.globals.get(home, handle) {
+            return done;
+        }
+        let named = (home, handle);
+        let (home, handle) = declaring(self.plan, home, handle);
+        if let Some(done) = self.copied.globals.get(home, handle) {
+            self.copied.globals.insert(named.0, named.1, done);
             return done;
         }
         let ir = &self.plan.homes[home].unit.ir;
@@ -274,7 +303,8 @@ impl<'p> Linker<'p> {
         };
         let span = self.span(home, ir.global_variables.get_span(handle));
         let done = self.out.global_variables.append(variable, span);
-        self.copied[home].globals.insert(handle, done);
+        self.copied.globals.insert(home, handle, done);
+        self.copied.globals.insert(named.0, named.1, done);
         done
     }
 
@@ -330,13 +360,9 @@ impl<'p> Linker<'p> {
         handle
     }
 
-    pub fn filter(
-        &mut self,
-        home: usize,
-        leaf: Option<Handle<naga::diagnostic_filter::DiagnosticFilterNode>>,
-    ) -> Option<Handle<naga::diagnostic_filter::DiagnosticFilterNode>> {
+    pub fn filter(&mut self, home: usize, leaf: Option<Handle<DiagnosticFilterNode>>) -> Option<Handle<DiagnosticFilterNode>> {
         let leaf = leaf?;
-        if let Some(done) = self.copied[home].filters.get(leaf) {
+        if let Some(done) = self.copied.filters.get(home, leaf) {
             return Some(done);
         }
         let ir = &self.plan.homes[home].unit.ir;
@@ -344,7 +370,7 @@ impl<'p> Linker<'p> {
         node.parent = self.filter(home, node.parent);
         let span = self.span(home, ir.diagnostic_filters.get_span(leaf));
         let done = self.out.diagnostic_filters.append(node, span);
-        self.copied[home].filters.insert(leaf, done);
+        self.copied.filters.insert(home, leaf, done);
         Some(done)
     }
 }

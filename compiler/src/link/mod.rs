@@ -5,6 +5,7 @@ mod combine;
 mod edits;
 mod ir;
 mod source;
+mod trim;
 mod types;
 
 pub use ir::link;

@@ -181,12 +181,12 @@ impl<'p> Writer<'p> {
         let needs = &unit.needs;
         let first = added(unit);
         if let Some((_, value)) = needs.constants.get_index(index) {
-            let emitted = plan.names.of_added(home, index)?;
+            let emitted = plan.names.of_added(&plan.homes, home, index)?;
             let text = format!("const {emitted}: {} = {};\n", typed_wgsl(value), value.wgsl());
             return Some((ItemKind::Constant, text));
         }
         if let Some((_, (declared, default))) = needs.overrides.get_index(index.wrapping_sub(needs.constants.len())) {
-            let emitted = plan.names.of_added(home, index)?;
+            let emitted = plan.names.of_added(&plan.homes, home, index)?;
             let text = format!("override {emitted}: {} = {};\n", wgsl_type(declared.ty), default.wgsl());
             return Some((ItemKind::Override, text));
         }
@@ -276,7 +276,7 @@ impl<'p> Writer<'p> {
         let _ = write!(out, "// {file}:{line}");
         for (number, &node) in home.instance.iter().flat_map(|&i| &plan.instances.list[i].nodes).enumerate() {
             out.push_str(if number == 0 { " at " } else { ", " });
-            out.push_str(&plan.tree.nodes[node].path);
+            plan.tree.write_path(node, out);
         }
         out.push('\n');
         for directive in unit.scan.directives() {
@@ -315,7 +315,7 @@ impl<'p> Writer<'p> {
         self.signature_types(planned.home, header);
         let place = plan.homes[planned.home]
             .instance
-            .map_or("", |i| plan.tree.nodes[plan.instances.list[i].node].path.as_str());
+            .map_or_else(String::new, |i| plan.tree.path(plan.instances.list[i].node));
         // Infallible: writing to a string.
         let _ = write!(
             out,
@@ -368,7 +368,7 @@ impl<'p> Writer<'p> {
             &Meaning::Constant(index) => {
                 let home = plan.shared_home(home);
                 self.want(home, index);
-                plan.names.of_added(home, index)
+                plan.names.of_added(&plan.homes, home, index)
             }
             Meaning::Function(function) => Some(plan.functions[caller?.calls.get(*function)?].name.as_str()),
             &Meaning::Own { item, instanced } => {
@@ -384,11 +384,11 @@ impl<'p> Writer<'p> {
             Meaning::InstanceType => {
                 let home = plan.shared_home(home);
                 self.want(home, added(unit) - 2);
-                plan.names.of_added(home, added(unit) - 2)
+                plan.names.of_added(&plan.homes, home, added(unit) - 2)
             }
             Meaning::Instances => {
                 self.want(home, added(unit) - 1);
-                plan.names.of_added(home, added(unit) - 1)
+                plan.names.of_added(&plan.homes, home, added(unit) - 1)
             }
             Meaning::Other => plan.name(home, name),
         };

@@ -8,7 +8,7 @@ impl Linker<'_> {
     /// The linked type of a unit's type.
     pub fn ty(&mut self, home: usize, handle: Handle<Type>) -> Handle<Type> {
         let home = self.plan.shared_home(home);
-        if let Some(done) = self.copied[home].types.get(handle) {
+        if let Some(done) = self.copied.types.get(home, handle) {
             return done;
         }
         let plan = self.plan;
@@ -35,7 +35,7 @@ impl Linker<'_> {
             }
             inner => self.insert(inner.clone(), span),
         };
-        self.copied[home].types.insert(handle, done);
+        self.copied.types.insert(home, handle, done);
         done
     }
 
@@ -63,11 +63,10 @@ impl Linker<'_> {
                     ..m.clone()
                 })
                 .collect();
-            let span_bytes = match declared.inner {
-                TypeInner::Struct { span, .. } => span,
-                _ => 0,
+            let inner = TypeInner::Struct {
+                members,
+                span: span_bytes(&declared.inner),
             };
-            let inner = TypeInner::Struct { members, span: span_bytes };
             let done = self.out.types.insert(
                 Type {
                     name: declared.name.clone(),
@@ -78,36 +77,40 @@ impl Linker<'_> {
             self.predeclare(home, handle, done);
             return done;
         };
+        if let Some(done) = self.structs[id] {
+            return done;
+        }
         let s = &plan.structs.list[id];
         let own = s.name(&plan.homes);
         let name = plan.name(s.home, own).unwrap_or(own).to_owned();
-        let kept: Vec<StructMember> = members
+        let living = members
             .iter()
             .enumerate()
-            .filter(|&(index, _)| plan.structs.is_live(id, index as u32))
-            .map(|(_, m)| m.clone())
-            .collect();
-        let members: Vec<StructMember> = kept
-            .into_iter()
-            .map(|m| StructMember {
-                ty: self.ty(home, m.ty),
-                ..m
-            })
-            .collect();
-        if s.fixed {
-            let span_bytes = match declared.inner {
-                TypeInner::Struct { span, .. } => span,
-                _ => 0,
-            };
-            return self.out.types.insert(
+            .filter(|&(index, _)| plan.structs.is_live(id, index as u32));
+        let mut kept = Vec::with_capacity(members.len());
+        for (_, member) in living {
+            kept.push(StructMember {
+                ty: self.ty(home, member.ty),
+                ..member.clone()
+            });
+        }
+        let done = if s.fixed {
+            self.out.types.insert(
                 Type {
                     name: Some(name),
-                    inner: TypeInner::Struct { members, span: span_bytes },
+                    inner: TypeInner::Struct {
+                        members: kept,
+                        span: span_bytes(&declared.inner),
+                    },
                 },
                 span,
-            );
-        }
-        self.insert_struct(Some(name), members, span)
+            )
+        } else {
+            self.insert_struct(Some(name), kept, span)
+        };
+        // Of all units that know it: they have it from one text.
+        self.structs[id] = Some(done);
+        done
     }
 
     /// A struct laid out by WGSL's rules, whatever offsets its members came with.
@@ -146,6 +149,13 @@ impl Linker<'_> {
         if let Some(key) = found {
             self.out.special_types.predeclared_types.insert(key, done);
         }
+    }
+}
+
+fn span_bytes(inner: &TypeInner) -> u32 {
+    match *inner {
+        TypeInner::Struct { span, .. } => span,
+        _ => 0,
     }
 }
 

@@ -6,6 +6,7 @@ use std::ops::Range;
 use naga::{Block, Expression, Handle, Statement, TypeInner};
 use rustc_hash::FxHashMap as HashMap;
 
+use super::always::Always;
 use super::branches::{Choice, choice, reachable};
 use super::cuts::Cuts;
 use super::lex::{Kind, Token, lex, short_circuits};
@@ -54,6 +55,8 @@ pub struct Facts {
     pub writes_only_own: bool,
     /// Values that its statements need, whatever else is needed.
     pub reads: Vec<Handle<Expression>>,
+    /// All that is read for these, and for its stores that lead through no struct.
+    pub always: Always,
     /// Its stores.
     pub stores: Vec<Store>,
     /// Its calls, in the order of the text.
@@ -70,6 +73,8 @@ pub struct Facts {
     pub types: Vec<Handle<naga::Type>>,
     /// The same of its expressions.
     pub typed: Vec<(Handle<Expression>, Handle<naga::Type>)>,
+    /// Declared structs whose members it names or composes.
+    pub structs: Vec<Handle<naga::Type>>,
     /// Types that keep all their members where this function stays: those that a `const` or `const_assert` among its statements names,
     /// since these leave no trace in the IR, but stay in the text, and those that constants at module scope are composed of.
     pub in_constants: Vec<Handle<naga::Type>>,
@@ -100,6 +105,7 @@ fn of_function(unit: &Unit, function: &naga::Function, info: &naga::valid::Funct
             callees: Vec::new(),
             writes_only_own: writes_only_own(&unit.ir, function, &function.body),
             reads: Vec::new(),
+            always: Always::default(),
             stores: Vec::new(),
             calls: Vec::new(),
             call_of: HashMap::default(),
@@ -108,13 +114,16 @@ fn of_function(unit: &Unit, function: &naga::Function, info: &naga::valid::Funct
             globals: Vec::new(),
             types: Vec::new(),
             typed: Vec::new(),
+            structs: Vec::new(),
             in_constants: in_constants(unit, name, &unit.cuts[at]),
         },
     };
     finder.block(&function.body);
     finder.actions();
     finder.types();
-    finder.facts
+    let mut facts = finder.facts;
+    facts.always = Always::new(unit, function, info, &facts);
+    facts
 }
 
 struct Finder<'u> {
@@ -267,6 +276,12 @@ impl Finder<'_> {
         let types = types.chain(function.local_variables.iter().map(|(_, l)| l.ty));
         self.facts.types = types.filter(|&ty| holds_struct(ir, ty)).collect();
         for (handle, expression) in function.expressions.iter() {
+            let named = match *expression {
+                Expression::AccessIndex { base, .. } => struct_type(self.unit, self.info, base),
+                Expression::Compose { ty, .. } => Some(ty).filter(|ty| self.unit.structs.contains_key(ty)),
+                _ => None,
+            };
+            self.facts.structs.extend(named);
             let ty = match *expression {
                 Expression::GlobalVariable(global) => {
                     self.facts.globals.push((handle, global));
@@ -279,6 +294,8 @@ impl Finder<'_> {
                 self.facts.typed.push((handle, ty));
             }
         }
+        self.facts.structs.sort_unstable();
+        self.facts.structs.dedup();
     }
 }
 

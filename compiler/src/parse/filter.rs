@@ -1,4 +1,4 @@
-//! Sets of words that can be joined and asked quickly.
+//! Sets of words that can be asked quickly.
 
 /// A set of words that may say yes wrongly, but never no: some times as many bits as a library's texts have words.
 #[derive(Clone, Debug)]
@@ -18,11 +18,6 @@ impl Filter {
     pub fn insert(&mut self, hash: u64) {
         let (at, bit) = Self::place(hash);
         self.0[at] |= bit;
-    }
-
-    /// Puts all words of another set in.
-    pub fn join(&mut self, other: &Self) {
-        self.0.iter_mut().zip(&other.0).for_each(|(a, b)| *a |= b);
     }
 
     /// Whether a word of this hash may be in.

@@ -4,13 +4,43 @@ use std::sync::{Arc, Mutex};
 
 use indexmap::IndexMap;
 
+use super::compose::constant_name;
 use super::filter::word_hash;
 use super::unit::Unit;
 use crate::catalog::lock;
 use crate::limits;
 
-/// Names of a unit's items with an instance's name before them, and their hashes.
-pub type Joined = Vec<(String, u64)>;
+/// Names of a unit's items with an instance's name before them, and of what the linker adds to the unit.
+#[derive(Debug, Default)]
+pub struct Joined {
+    /// Joined names and their hashes: of the items in their order, then of what is added.
+    pub names: Vec<(String, u64)>,
+    /// What the linker adds is called so in the unit: constants, overrides, `Instance`, `instances`.
+    pub added: Vec<String>,
+}
+
+impl Joined {
+    fn new(unit: &Unit, prefix: &str) -> Self {
+        let needs = &unit.needs;
+        let params = needs.constants.keys().chain(needs.overrides.keys());
+        let instances = ["Instance", "instances"].iter().filter(|_| !needs.instances.is_empty());
+        let items = unit.scan.items.iter().map(|item| joined(prefix, &item.name));
+        let names = items
+            .chain(params.clone().map(|name| joined(prefix, name)))
+            .chain(instances.clone().map(|name| joined(prefix, name)));
+        let hashed = |name: String| {
+            let hash = word_hash(&name);
+            (name, hash)
+        };
+        Self {
+            names: names.map(hashed).collect(),
+            added: params
+                .map(|name| constant_name(name))
+                .chain(instances.map(|&name| name.to_owned()))
+                .collect(),
+        }
+    }
+}
 
 /// The same by the instance's name: most permutations call their instances alike.
 #[derive(Debug, Default)]
@@ -23,18 +53,10 @@ impl JoinedNames {
         if let Some(joined) = kept.get(prefix) {
             return Arc::clone(joined);
         }
-        let names = unit.scan.items.iter().map(|item| joined(prefix, &item.name));
-        let names: Arc<Joined> = Arc::new(
-            names
-                .map(|name| {
-                    let hash = word_hash(&name);
-                    (name, hash)
-                })
-                .collect(),
-        );
         if kept.len() >= limits::VARIANTS {
             kept.shift_remove_index(0);
         }
+        let names = Arc::new(Joined::new(unit, prefix));
         kept.insert(prefix.to_owned(), Arc::clone(&names));
         names
     }

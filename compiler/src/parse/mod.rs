@@ -1,5 +1,6 @@
 //! WGSL text to parsed units: each module alone, against stubs of what it calls.
 
+mod always;
 mod branches;
 mod capabilities;
 mod checks;
@@ -14,6 +15,7 @@ mod mentions;
 mod operands;
 mod pure;
 pub mod scan;
+mod templates;
 mod unit;
 
 pub use branches::{Choice, choice, reachable};
@@ -27,4 +29,5 @@ pub use joined::{Joined, joined};
 pub use lines::whole_lines;
 pub use mentions::Meaning;
 pub use operands::{expression_operands, expression_operands_mut, statement_operands_mut};
+pub use templates::{Template, Templates};
 pub use unit::{StructKey, Unit, chain, check_interface, labelled, parse_unit, parse_whole, readable};

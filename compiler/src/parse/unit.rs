@@ -12,11 +12,12 @@ use super::checks;
 use super::compose::{Composed, Interface, Needs, Origin, compose};
 use super::cuts::{Cuts, cuts};
 use super::facts::{Facts, facts};
-use super::filter::{Filter, word_hash};
+use super::filter::word_hash;
 use super::joined::JoinedNames;
 use super::mentions::{Mention, mentions};
 use super::pure::droppable;
 use super::scan::{Item, Scan};
+use super::templates::Templates;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::upstream::guarded;
 
@@ -60,10 +61,12 @@ pub struct Unit {
     pub joined: JoinedNames,
     /// Words that linked names must not be: locals, and words of the language that the text uses.
     pub words: HashSet<String>,
-    /// The same, for asking quickly.
-    pub words_filter: Filter,
+    /// Their hashes.
+    pub word_hashes: Vec<u64>,
     /// Facts of the functions: by function handle, then by entry point.
     pub facts: Vec<Facts>,
+    /// What has been linked of them: by function handle, then by entry point.
+    pub templates: Vec<Templates>,
     /// Their text, as far as it may go: by function handle, then by entry point.
     pub cuts: Vec<Cuts>,
     /// What each item of the author's file mentions.
@@ -126,9 +129,10 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
         fixed_structs: HashSet::default(),
         joined: JoinedNames::default(),
         words: HashSet::default(),
-        words_filter: Filter::default(),
+        word_hashes: Vec::new(),
         interfaces: BTreeSet::new(),
         facts: Vec::new(),
+        templates: Vec::new(),
         cuts: Vec::new(),
         mentions: Vec::new(),
         droppable: Vec::new(),
@@ -149,15 +153,16 @@ fn index(file: Arc<SourceFile>, scan: Scan, composed: Composed, needs: Needs, in
     unit.fixed_structs = fixed_structs(&unit);
     unit.dependent = dependents(&unit);
     unit.words = words(&unit);
-    unit.words.iter().for_each(|word| unit.words_filter.insert(word_hash(word)));
+    unit.word_hashes = unit.words.iter().map(|word| word_hash(word)).collect();
     unit.interfaces = interfaces(&unit);
     unit.cuts = functions_of(&unit)
         .map(|(f, item)| item.map_or_else(Cuts::default, |item| cuts(&unit, f, item)))
         .collect();
+    unit.params = variable(&unit, "params", &Origin::Params);
     unit.facts = facts(&unit);
+    unit.templates.resize_with(unit.facts.len(), Templates::default);
     unit.mentions = unit.scan.items.iter().map(|item| mentions(&unit, item)).collect();
     unit.droppable = unit.ir.functions.iter().map(|(_, f)| droppable(&unit.ir, f)).collect();
-    unit.params = variable(&unit, "params", &Origin::Params);
     unit.instances = variable(&unit, "instances", &Origin::Instances);
     Ok(unit)
 }

@@ -1,11 +1,13 @@
 //! Bindings and uniform blocks, numbered over the whole tree.
 
+use std::sync::Arc;
+
 use rustc_hash::FxHashSet as HashSet;
 
 use naga::{AddressSpace, GlobalVariable, Handle};
 
 use super::Plan;
-use crate::catalog::Catalog;
+use crate::catalog::{Catalog, Category, Module};
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::Resource;
 use crate::parse::Origin;
@@ -23,7 +25,27 @@ pub struct PlannedGlobal {
     /// Group and binding; `None` for private and workgroup variables.
     pub binding: Option<(u32, u32)>,
     /// What its manifest says of it; nothing for `instances` and for private and workgroup variables.
-    pub declared: Option<Resource>,
+    pub declared: Option<Declared>,
+}
+
+/// A resource where it is declared.
+#[derive(Clone, Debug)]
+pub enum Declared {
+    /// In a module's manifest, by its number there.
+    Module(Arc<Module>, usize),
+    /// In a category's manifest.
+    Category(Arc<Category>, usize),
+}
+
+impl Declared {
+    /// The declaration.
+    pub fn resource(&self) -> Option<&Resource> {
+        let (resources, index) = match self {
+            Self::Module(module, index) => (&module.manifest.resources, *index),
+            Self::Category(category, index) => (&category.manifest.resources, *index),
+        };
+        resources.get_index(index).map(|(_, resource)| resource)
+    }
 }
 
 /// The uniform parameters of one group.
@@ -55,16 +77,15 @@ pub struct BlockMember {
 pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
     let reached = reached(plan);
     let mut next = [0u32; GROUPS.len()];
-    for group in 0..GROUPS.len() as u32 {
-        let members = block_members(catalog, plan, group);
-        if !members.is_empty() {
-            plan.blocks.push(Block {
-                group,
-                binding: 0,
-                members,
-            });
-            next[group as usize] = 1;
-        }
+    let mut members: [Vec<BlockMember>; GROUPS.len()] = Default::default();
+    block_members(catalog, plan, &mut members);
+    for (group, members) in members.into_iter().enumerate().filter(|(_, members)| !members.is_empty()) {
+        plan.blocks.push(Block {
+            group: group as u32,
+            binding: 0,
+            members,
+        });
+        next[group] = 1;
     }
     let interfaces = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_none());
     let instances = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_some());
@@ -102,11 +123,12 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
 
 /// Variables that live expressions name, by the home that declares them.
 fn reached(plan: &Plan) -> HashSet<(usize, Handle<GlobalVariable>)> {
+    let mut named = HashSet::default();
     let mut reached = HashSet::default();
     for planned in &plan.functions {
         let Some(facts) = planned.facts(&plan.homes) else { continue };
         for &(handle, global) in &facts.globals {
-            if planned.live[handle.index()] {
+            if planned.live[handle.index()] && named.insert((planned.home, global)) {
                 reached.insert(declaring(plan, planned.home, global));
             }
         }
@@ -135,46 +157,44 @@ pub fn declaring(plan: &Plan, home: usize, global: Handle<GlobalVariable>) -> (u
     (home, global)
 }
 
-fn block_members(catalog: &Catalog, plan: &Plan, group: u32) -> Vec<BlockMember> {
-    let mut members = Vec::new();
+/// The members of each group's block.
+fn block_members(catalog: &Catalog, plan: &Plan, members: &mut [Vec<BlockMember>]) {
     for (index, instance) in plan.instances.list.iter().enumerate() {
-        let module = &plan.tree.nodes[instance.node].module;
-        if catalog.category(&module.category).map_or(3, |c| c.manifest.group) != group {
+        let uniforms = &plan.homes[index].unit.needs.uniforms;
+        if uniforms.is_empty() {
             continue;
         }
-        for (position, param) in plan.homes[index].unit.needs.uniforms.keys().enumerate() {
+        let module = &plan.tree.nodes[instance.node].module;
+        let group = catalog.category(&module.category).map_or(3, |c| c.manifest.group);
+        for (position, param) in uniforms.keys().enumerate() {
             if plan.live_params.contains(&(index, position as u32)) {
-                let name = format!("{}_{param}", instance.name);
-                members.push(BlockMember {
+                members[group as usize].push(BlockMember {
                     home: index,
                     index: position as u32,
                     param: param.clone(),
-                    name,
+                    name: [&instance.name, "_", param].concat(),
                 });
             }
         }
     }
-    members
 }
 
 /// What a home's manifest says of a variable.
-fn declared<'c>(catalog: &'c Catalog, plan: &'c Plan, home: usize, name: &str) -> Option<&'c Resource> {
-    match plan.homes[home].instance {
-        Some(instance) => plan.tree.nodes[plan.instances.list[instance].node]
-            .module
-            .manifest
-            .resources
-            .get(name),
-        None => catalog
-            .category(plan.homes[home].unit.interface.as_deref()?)?
-            .manifest
-            .resources
-            .get(name),
-    }
+fn declared(catalog: &Catalog, plan: &Plan, home: usize, name: &str) -> Option<Declared> {
+    Some(match plan.homes[home].instance {
+        Some(instance) => {
+            let module = &plan.tree.nodes[plan.instances.list[instance].node].module;
+            Declared::Module(Arc::clone(module), module.manifest.resources.get_index_of(name)?)
+        }
+        None => {
+            let category = catalog.category(plan.homes[home].unit.interface.as_deref()?)?;
+            Declared::Category(Arc::clone(category), category.manifest.resources.get_index_of(name)?)
+        }
+    })
 }
 
 /// The bind group of a resource, and what its manifest says of it.
-fn place(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVariable>) -> Result<(u32, Option<Resource>), Report> {
+fn place(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVariable>) -> Result<(u32, Option<Declared>), Report> {
     let unit = &plan.homes[home].unit;
     let name = unit.ir.global_variables[handle].name.as_deref().unwrap_or_default();
     let category = match plan.homes[home].instance {
@@ -185,7 +205,8 @@ fn place(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVaria
     if unit.instances == Some(handle) {
         return Ok((group, None));
     }
-    let Some(resource) = declared(catalog, plan, home, name) else {
+    let declared = declared(catalog, plan, home, name);
+    let Some(resource) = declared.as_ref().and_then(Declared::resource) else {
         let span = unit.scan.item(name).map_or(0..0, |i| i.name_span.clone());
         return Err(Diagnostic::new(
             codes::UNDECLARED_RESOURCE,
@@ -195,5 +216,5 @@ fn place(catalog: &Catalog, plan: &Plan, home: usize, handle: Handle<GlobalVaria
         .note("the host must know how to fill it: add it to `resources` of the manifest beside this file")
         .into());
     };
-    Ok((resource.group.unwrap_or(group), Some(resource.clone())))
+    Ok((resource.group.unwrap_or(group), declared))
 }

@@ -186,10 +186,24 @@ impl<'p> Walk<'p> {
         for &ty in &facts.in_constants {
             self.keep_all_members(planned.home, ty);
         }
-        self.states[id].live = vec![false; function.expressions.len()];
-        self.states[id].read = vec![false; function.expressions.len()];
-        facts.reads.iter().for_each(|&h| self.read(id, h));
-        facts.stores.iter().for_each(|store| self.store(id, store));
+        let always = &facts.always;
+        self.states[id].live.clone_from(&always.live);
+        self.states[id].read.clone_from(&always.read);
+        self.params.extend(always.params.iter().map(|&index| (planned.home, index)));
+        for &(ty, member) in &always.members {
+            if let Some(s) = self.structs.id(planned.home, ty) {
+                self.enliven(s, member);
+            }
+        }
+        for called in always.calls.iter().filter_map(|&callee| planned.calls.get(callee)) {
+            self.need(called);
+        }
+        for &composed in &always.composed {
+            self.expression(id, planned, function, composed);
+            self.follow(id, planned, function);
+        }
+        let stores = facts.stores.iter().filter(|store| !store.path.is_empty());
+        stores.for_each(|store| self.store(id, store));
         facts.calls.iter().for_each(|call| self.call(id, facts, call));
         for &named in &facts.lets {
             if self.acts(id, named) {
@@ -292,6 +306,11 @@ impl<'p> Walk<'p> {
         let Some(function) = planned.ir(self.homes) else { return };
         // A read is never begun within another one.
         self.stack.push(handle);
+        self.follow(id, planned, function);
+    }
+
+    /// Reads what is on the stack, and all that is needed for it.
+    fn follow(&mut self, id: usize, planned: &Planned, function: &naga::Function) {
         while let Some(handle) = self.stack.pop() {
             let state = &mut self.states[id];
             if std::mem::replace(&mut state.read[handle.index()], true) {

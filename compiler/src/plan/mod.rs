@@ -19,18 +19,22 @@ use crate::manifest::Combine;
 use crate::parse::{Cuts, Facts, Unit};
 use crate::resolve::{Instances, Tree};
 
-pub use bindings::{Block, GROUPS, PlannedGlobal, declaring};
+pub use bindings::{Block, Declared, GROUPS, PlannedGlobal, declaring};
 pub use names::Names;
 pub use reach::{Roots, plan, roomy};
 pub use stores::{is_dead_store, struct_of};
 pub use structs::Structs;
+
+/// Linked spans below this one stand in a function, and count from the start of the text of that function's unit.
+pub const ITEMS: u32 = 1 << 31;
 
 /// A unit in the plan: a module instance, or an interface.
 #[derive(Debug)]
 pub struct Home {
     /// Its parsed text.
     pub unit: Arc<Unit>,
-    /// Added to its spans, so that a span tells the unit.
+    /// Added to the spans of its items, so that a span tells the unit: [`ITEMS`] or more. Spans within functions are as the unit has
+    /// them.
     pub base: u32,
     /// The instance, if it is one.
     pub instance: Option<usize>,
@@ -139,6 +143,21 @@ impl Plan {
         self.names.get(&self.homes, home, name)
     }
 
+    /// The home of a linked function.
+    pub fn home_of(&self, function: Handle<naga::Function>) -> Option<usize> {
+        let linked = self.functions.iter().filter(|f| !matches!(f.body, Body::Entry(_)));
+        linked.map(|f| f.home).nth(function.index())
+    }
+
+    /// The home of a linked entry point.
+    pub fn home_of_entry(&self, name: &str, stage: naga::ShaderStage) -> Option<usize> {
+        let is_meant = |f: &&Planned| match f.body {
+            Body::Entry(index) => f.name == name && self.homes[f.home].unit.ir.entry_points[index].stage == stage,
+            _ => false,
+        };
+        self.functions.iter().find(is_meant).map(|f| f.home)
+    }
+
     /// The home of a category's interface.
     pub fn interface_home(&self, category: &str) -> Option<usize> {
         self.homes.iter().position(|h| h.unit.interface.as_deref() == Some(category))
@@ -162,24 +181,25 @@ impl Planned {
         }
     }
 
+    /// Its number among its unit's functions and, behind them, entry points; none for a combined function.
+    fn index(&self, unit: &Unit) -> Option<usize> {
+        match self.body {
+            Body::Function(handle) => Some(handle.index()),
+            Body::Entry(index) => Some(unit.ir.functions.len() + index),
+            Body::Combined { .. } => None,
+        }
+    }
+
     /// What is known of its body whatever it is linked to; nothing for a combined function.
     pub fn facts<'p>(&self, homes: &'p [Home]) -> Option<&'p Facts> {
         let unit = &homes[self.home].unit;
-        match self.body {
-            Body::Function(handle) => Some(&unit.facts[handle.index()]),
-            Body::Entry(index) => Some(&unit.facts[unit.ir.functions.len() + index]),
-            Body::Combined { .. } => None,
-        }
+        unit.facts.get(self.index(unit)?)
     }
 
     /// The stretches of its text that may go; none for a combined function.
     pub fn cuts<'p>(&self, homes: &'p [Home]) -> Option<&'p Cuts> {
         let unit = &homes[self.home].unit;
-        match self.body {
-            Body::Function(handle) => Some(&unit.cuts[handle.index()]),
-            Body::Entry(index) => Some(&unit.cuts[unit.ir.functions.len() + index]),
-            Body::Combined { .. } => None,
-        }
+        unit.cuts.get(self.index(unit)?)
     }
 
     /// Whether a call stays although nobody reads its result.

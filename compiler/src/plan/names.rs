@@ -6,7 +6,7 @@ use rustc_hash::FxHashSet as HashSet;
 
 use super::{Body, Home, Plan};
 use crate::parse::scan::ItemKind;
-use crate::parse::{Filter, Joined, Unit, constant_name, joined, word_hash};
+use crate::parse::{Filter, Joined, Unit, joined, word_hash};
 
 /// Emitted names of the items of all homes.
 #[derive(Debug, Default)]
@@ -14,19 +14,26 @@ pub struct Names(Vec<HomeNames>);
 
 #[derive(Debug, Default)]
 struct HomeNames {
-    /// What the unit's items are called with the instance's name before them, by their index in its scan.
+    /// What the unit's items, by their index in its scan, are called with the instance's name before them; behind the items what
+    /// the linker itself adds to the unit.
     joined: Arc<Joined>,
     /// Items that are called something else, since that name is taken.
     renamed: Vec<(usize, String)>,
-    /// Of what the linker itself adds to the unit: name there, emitted name. Constants, overrides, `Instance`, `instances`.
-    added: Vec<(String, String)>,
 }
 
 impl HomeNames {
     fn item(&self, item: usize) -> Option<&str> {
         match self.renamed.iter().find(|(index, _)| *index == item) {
             Some((_, name)) => Some(name),
-            None => self.joined.get(item).map(|(name, _)| name.as_str()),
+            None => self.joined.names.get(item).map(|(name, _)| name.as_str()),
+        }
+    }
+
+    /// Gives an item its name, or another one if that is taken.
+    fn give(&mut self, item: usize, taken: &mut Taken) {
+        let (name, hash) = &self.joined.names[item];
+        if !taken.take(name, *hash) {
+            self.renamed.push((item, taken.free(name.clone())));
         }
     }
 }
@@ -35,10 +42,12 @@ impl Names {
     /// The emitted name of an item.
     pub fn get(&self, homes: &[Home], home: usize, name: &str) -> Option<&str> {
         let names = self.0.get(home)?;
-        match homes[home].unit.scan.item_index(name) {
-            Some(index) => names.item(index),
-            None => names.added.iter().find(|(own, _)| own == name).map(|(_, emitted)| emitted.as_str()),
-        }
+        let scan = &homes[home].unit.scan;
+        let index = scan.item_index(name).or_else(|| {
+            let added = names.joined.added.iter().position(|own| own == name)?;
+            Some(scan.items.len() + added)
+        });
+        names.item(index?)
     }
 
     /// The emitted name of an item by its index in the unit's scan.
@@ -47,8 +56,8 @@ impl Names {
     }
 
     /// The emitted name of what the linker adds to a unit, by its index: constants, overrides, `Instance`, `instances`.
-    pub fn of_added(&self, home: usize, index: usize) -> Option<&str> {
-        self.0.get(home)?.added.get(index).map(|(_, emitted)| emitted.as_str())
+    pub fn of_added(&self, homes: &[Home], home: usize, index: usize) -> Option<&str> {
+        self.0.get(home)?.item(homes[home].unit.scan.items.len() + index)
     }
 
     /// All of them: home, name there, emitted name. Of functions that are not planned it is what they would be called.
@@ -56,7 +65,9 @@ impl Names {
         self.0.iter().enumerate().flat_map(|(home, names)| {
             let items = homes[home].unit.scan.items.iter().enumerate();
             let items = items.filter_map(|(index, item)| Some((item.name.as_str(), names.item(index)?)));
-            let added = names.added.iter().map(|(own, emitted)| (own.as_str(), emitted.as_str()));
+            let first = homes[home].unit.scan.items.len();
+            let added = names.joined.added.iter().enumerate();
+            let added = added.filter_map(move |(index, own)| Some((own.as_str(), names.item(first + index)?)));
             items.chain(added).map(move |(own, emitted)| (home, own, emitted))
         })
     }
@@ -66,52 +77,43 @@ impl Names {
 pub fn assign(plan: &mut Plan) {
     let mut taken = Taken::new(plan);
     let mut names: Vec<HomeNames> = plan.homes.iter().map(|_| HomeNames::default()).collect();
-    let mut planned: Vec<Vec<(usize, usize)>> = vec![Vec::new(); plan.homes.len()];
+    // Home, item, function.
+    let mut planned: Vec<(usize, usize, usize)> = Vec::with_capacity(plan.functions.len());
     for (index, function) in plan.functions.iter().enumerate() {
         let scan = &plan.homes[function.home].unit.scan;
         if !matches!(function.body, Body::Combined { .. })
             && let Some(item) = scan.item_index(function.source_name(&plan.homes))
         {
-            planned[function.home].push((item, index));
+            planned.push((function.home, item, index));
         }
     }
+    planned.sort_unstable();
     // Interfaces first: their names are the contract.
     let interfaces = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_none());
     let instances = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_some());
     for home in interfaces.chain(instances) {
         let unit = &plan.homes[home].unit;
-        let prefix = &plan.homes[home].prefix;
         let given = &mut names[home];
-        given.joined = unit.joined.get(unit, prefix);
-        planned[home].sort_unstable();
-        let mut functions = planned[home].iter().peekable();
+        given.joined = unit.joined.get(unit, &plan.homes[home].prefix);
+        let mut functions = planned[planned.partition_point(|&(of, ..)| of < home)..].iter().peekable();
         for (index, item) in unit.scan.items.iter().enumerate() {
-            let function = functions.next_if(|(item, _)| *item == index).map(|&(_, function)| function);
+            let function = functions.next_if(|&&(of, item, _)| (of, item) == (home, index));
             if item.name.is_empty() || (item.kind == ItemKind::Function && function.is_none()) {
                 continue;
             }
-            let entry = function.is_some_and(|f| matches!(plan.functions[f].body, Body::Entry(_)));
-            let (joined, hash) = &given.joined[index];
+            let function = function.map(|&(.., function)| &mut plan.functions[function]);
             // The root's entry points are what a host calls by name.
-            let renamed = if entry && home == 0 {
-                Some(taken.free(item.name.clone()))
-            } else if taken.take(joined, *hash) {
-                None
+            if home == 0 && function.as_ref().is_some_and(|f| matches!(f.body, Body::Entry(_))) {
+                given.renamed.push((index, taken.free(item.name.clone())));
             } else {
-                Some(taken.free(joined.clone()))
-            };
-            if let Some(function) = function {
-                plan.functions[function].name.clone_from(renamed.as_ref().unwrap_or(joined));
+                given.give(index, &mut taken);
             }
-            given.renamed.extend(renamed.map(|name| (index, name)));
-        }
-        for name in unit.needs.constants.keys().chain(unit.needs.overrides.keys()) {
-            given.added.push((constant_name(name), taken.free(joined(prefix, name))));
-        }
-        if !unit.needs.instances.is_empty() {
-            for name in ["Instance", "instances"] {
-                given.added.push((name.to_owned(), taken.free(joined(prefix, name))));
+            if let (Some(function), Some(name)) = (function, given.item(index)) {
+                function.name = name.to_owned();
             }
+        }
+        for index in unit.scan.items.len()..given.joined.names.len() {
+            given.give(index, &mut taken);
         }
     }
     for index in 0..plan.functions.len() {
@@ -139,13 +141,14 @@ struct Taken {
 
 impl Taken {
     fn new(plan: &Plan) -> Self {
+        let items = plan.homes.iter().map(|home| home.unit.scan.items.len()).sum();
         let mut taken = Self {
-            given: HashSet::default(),
+            given: HashSet::with_capacity_and_hasher(items, Default::default()),
             words: Filter::default(),
-            units: Vec::new(),
+            units: Vec::with_capacity(plan.homes.len()),
         };
         for (_, home) in plan.homes.iter().enumerate().filter(|(index, home)| home.first == *index) {
-            taken.words.join(&home.unit.words_filter);
+            home.unit.word_hashes.iter().for_each(|&hash| taken.words.insert(hash));
             taken.units.push(Arc::clone(&home.unit));
         }
         for group in super::GROUPS {

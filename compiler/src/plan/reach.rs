@@ -7,8 +7,8 @@ use std::sync::Arc;
 use naga::Handle;
 use rayon::prelude::*;
 
-use super::{Body, Calls, Home, Names, Plan, Planned, Structs, bindings, live, names};
-use crate::catalog::{Catalog, Constants, Variants};
+use super::{Body, Calls, Home, ITEMS, Names, Plan, Planned, Structs, bindings, live, names};
+use crate::catalog::Catalog;
 use crate::contracts::compute_entry;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::{Combine, PassDecl};
@@ -133,11 +133,11 @@ impl Reach<'_> {
             // Equal texts are one unit, whatever the catalog still keeps: linking goes by identity.
             let equal = |before: &Instance| {
                 let other = &self.tree.nodes[before.node];
-                Arc::ptr_eq(&other.module, &node.module) && Variants::key(&other.constants) == Variants::key(&node.constants)
+                Arc::ptr_eq(&other.module, &node.module) && other.variant == node.variant
             };
             let unit = match self.instances.list[..index].iter().position(equal) {
                 Some(before) => Arc::clone(&self.homes[before].unit),
-                None => self.catalog.unit(&node.module, &node.constants)?,
+                None => self.catalog.unit(&node.module, &node.constants, &node.variant)?,
             };
             // What the compiler makes itself needs no telling apart.
             let prefix = if node.module.category.is_empty() {
@@ -167,26 +167,25 @@ impl Reach<'_> {
 
     /// Parses what is not parsed yet on all cores. What is wrong is found again, and told, by who asks for it in order.
     fn parse_ahead(&self) {
-        let mut missing: Vec<(&TreeNode, Constants)> = Vec::new();
+        let mut missing: Vec<&TreeNode> = Vec::new();
         for instance in &self.instances.list {
             let node = &self.tree.nodes[instance.node];
-            let key = Variants::key(&node.constants);
             let is_known = missing
                 .iter()
-                .any(|(other, k)| Arc::ptr_eq(&other.module, &node.module) && *k == key);
-            if !is_known && node.module.variants.get(&key).is_none() {
-                missing.push((node, key));
+                .any(|other| Arc::ptr_eq(&other.module, &node.module) && other.variant == node.variant);
+            if !is_known && node.module.variants.get(&node.variant).is_none() {
+                missing.push(node);
             }
         }
         if missing.len() > 1 {
-            let parse = |(node, _): &(&TreeNode, Constants)| drop(self.catalog.unit(&node.module, &node.constants));
+            let parse = |node: &&TreeNode| drop(self.catalog.unit(&node.module, &node.constants, &node.variant));
             missing.par_iter().for_each(parse);
         }
     }
 
     fn push_home(&mut self, unit: Arc<Unit>, instance: Option<usize>, prefix: String) -> usize {
         let index = self.homes.len();
-        let base = self.homes.last().map_or(1, |h| h.base + h.unit.composed.text.len() as u32 + 1);
+        let base = self.homes.last().map_or(ITEMS, |h| h.base + h.unit.composed.text.len() as u32 + 1);
         let first = self.homes.iter().position(|h| Arc::ptr_eq(&h.unit, &unit)).unwrap_or(index);
         self.homes.push(Home {
             unit,
@@ -227,9 +226,10 @@ impl Reach<'_> {
                 .map_or("", |(name, _)| name);
             return compute_entry(&node.module, &unit, pass, entry);
         }
+        let place = self.tree.place(self.instances.list[home].node);
         Err(
             Diagnostic::new(codes::NOT_A_ROOT, format!("`{}` has no entry points", node.module.name))
-                .at(&node.place.file, node.place.name_span(), "a pass is needed here")
+                .at(&place.file, place.name_span(), "a pass is needed here")
                 .note("a subtree without entry points can be probed, not emitted")
                 .into(),
         )
@@ -345,7 +345,7 @@ impl Reach<'_> {
         );
         let second = self.node(home).and_then(|n| self.tree.nodes[n].slot(slot)?.1.get(1).copied());
         if let Some(second) = second {
-            let place = &self.tree.nodes[second].place;
+            let place = self.tree.place(second);
             diagnostic = diagnostic.at(&place.file, place.name_span(), "a second module stands in that slot here");
         }
         if let Some(category) = category {
@@ -395,15 +395,16 @@ impl Reach<'_> {
             }
             _ if self.tree.nodes[self.instances.list[owner].node].module.category.is_empty() => self.neutral(interface, function),
             _ => {
-                let node = &self.tree.nodes[self.instances.list[home].node];
+                let index = self.instances.list[home].node;
+                let (node, place) = (&self.tree.nodes[index], self.tree.place(index));
                 Err(Diagnostic::new(
                     codes::MISSING_FUNCTION,
                     format!("the module does not define `{function}`, which `{}` calls", node.module.name),
                 )
                 .at(&unit.file, 0..0, "in this file")
                 .at(
-                    &node.place.file,
-                    node.place.span(),
+                    &place.file,
+                    place.span(),
                     format!("`{}` fills one of its slots here", node.module.name),
                 )
                 .note(format!(

@@ -7,7 +7,7 @@ use super::{
     binding_type, entry_point, stages_using, wgsl_type_name,
 };
 use crate::parse::constant_name;
-use crate::plan::{Body, Plan};
+use crate::plan::{Body, Declared, Plan};
 use crate::validate::Validated;
 
 /// Reflects a pass.
@@ -65,7 +65,7 @@ fn bindings(plan: &Plan, validated: &Validated) -> Vec<Binding> {
         let unit = &plan.homes[global.home].unit;
         let name = unit.ir.global_variables[global.handle].name.clone().unwrap_or_default();
         let instance = plan.homes[global.home].instance.map(|i| plan.instances.list[i].name.clone());
-        let fill = match (&instance, &global.declared) {
+        let fill = match (&instance, global.declared.as_ref().and_then(Declared::resource)) {
             (Some(instance), _) if unit.instances == Some(global.handle) => {
                 let instance = instance.clone();
                 (Fill::Instances { instance }, String::new())
@@ -222,7 +222,7 @@ fn instances(plan: &Plan) -> Vec<Instance> {
                 name: instance.name.clone(),
                 module: node.module.name.clone(),
                 category: node.module.category.clone(),
-                paths: instance.nodes.iter().map(|&n| plan.tree.nodes[n].path.clone()).collect(),
+                paths: instance.nodes.iter().map(|&n| plan.tree.path(n)).collect(),
                 fields: node.module.manifest.instances.clone(),
             }
         })

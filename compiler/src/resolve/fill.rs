@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
-use super::{Place, Tree, TreeNode, Way, rules};
-use crate::catalog::{Catalog, Module};
+use super::{Place, Standing, Tree, TreeNode, rules};
+use crate::catalog::{Catalog, Module, Variants};
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::limits;
 use crate::manifest::{Arity, Filling, Node, ParamMode, Slot, Typed, Value, typed};
@@ -17,7 +17,7 @@ use crate::program::Recipe;
 /// A name, slot, parameter or rule is wrong; the tree is too deep or too large.
 pub fn resolve(catalog: &Catalog, recipe: &Recipe) -> Result<Tree, Report> {
     let place = Place::new(&recipe.source);
-    let module = catalog.module_at(&recipe.root.module, None, &place)?;
+    let module = catalog.module_at(&recipe.root.module, None, || place.clone())?;
     resolve_root(catalog, module, &recipe.root, place)
 }
 
@@ -25,10 +25,13 @@ pub fn resolve(catalog: &Catalog, recipe: &Recipe) -> Result<Tree, Report> {
 pub fn resolve_root(catalog: &Catalog, module: Arc<Module>, root: &Node, place: Place) -> Result<Tree, Report> {
     let mut resolver = Resolver {
         catalog,
-        tree: Tree { nodes: Vec::new() },
+        tree: Tree {
+            nodes: Vec::new(),
+            root: place,
+        },
         defaults: Vec::new(),
     };
-    resolver.node(module, root, None, "main".to_owned(), place, 0)?;
+    resolver.node(module, root, None, Standing::default(), 0)?;
     rules::check(&resolver.tree)?;
     Ok(resolver.tree)
 }
@@ -41,19 +44,17 @@ struct Resolver<'a> {
 }
 
 impl Resolver<'_> {
-    fn node(
-        &mut self,
-        module: Arc<Module>,
-        node: &Node,
-        parent: Option<usize>,
-        path: String,
-        place: Place,
-        depth: usize,
-    ) -> Result<usize, Report> {
+    fn node(&mut self, module: Arc<Module>, node: &Node, parent: Option<usize>, standing: Standing, depth: usize) -> Result<usize, Report> {
+        let index = self.tree.nodes.len();
+        let place = |tree: &Tree| match parent {
+            Some(parent) => tree.standing_place(parent, standing),
+            None => tree.root.clone(),
+        };
         if depth > limits::TREE_DEPTH {
-            return Err(too_deep(&place));
+            return Err(too_deep(&place(&self.tree)));
         }
-        if self.tree.nodes.len() >= limits::INSTANCES {
+        if index >= limits::INSTANCES {
+            let place = place(&self.tree);
             return Err(Diagnostic::new(
                 codes::TOO_MANY_INSTANCES,
                 format!("the tree has more than {} modules", limits::INSTANCES),
@@ -61,55 +62,50 @@ impl Resolver<'_> {
             .at(&place.file, place.span(), "with this one")
             .into());
         }
-        let constants = constants(&module, node, &place)?;
-        let index = self.tree.nodes.len();
+        let constants = constants(&module, node, || place(&self.tree))?;
         if let Some(label) = &node.label
             && !is_identifier(label)
         {
-            return Err(bad_label(label, &place));
+            return Err(bad_label(label, &place(&self.tree)));
         }
+        unknown_slots(&module, node.fill.keys(), || place(&self.tree))?;
         self.tree.nodes.push(TreeNode {
             module: Arc::clone(&module),
             parent,
-            path: path.clone(),
+            standing,
             fills: Vec::with_capacity(module.manifest.slots.len()),
+            variant: Variants::key(&constants),
             constants,
             label: node.label.clone(),
-            place: place.clone(),
         });
-        unknown_slots(&module, node.fill.keys(), &place)?;
-        for (name, slot) in &module.manifest.slots {
-            let nodes = self.slot(index, &module, node, (name, slot), &path, &place, depth)?;
+        for slot in 0..module.manifest.slots.len() {
+            let nodes = self.slot(index, &module, node, slot, depth)?;
             self.tree.nodes[index].fills.push(nodes);
         }
         Ok(index)
     }
 
-    #[allow(clippy::too_many_arguments)]
-    fn slot(
-        &mut self,
-        owner: usize,
-        module: &Arc<Module>,
-        node: &Node,
-        (name, slot): (&String, &Slot),
-        path: &str,
-        place: &Place,
-        depth: usize,
-    ) -> Result<Vec<usize>, Report> {
-        let by_recipe = node.fill.get(name);
-        let (filling, at) = match (by_recipe, &slot.default) {
-            // A module that the compiler made stands around the recipe: what fills it is the recipe's own root.
-            (Some(filling), _) if module.category.is_empty() => (filling, place.clone()),
-            (Some(filling), _) => (filling, place.keys(&["fill", name])),
+    fn slot(&mut self, owner: usize, module: &Arc<Module>, node: &Node, index: usize, depth: usize) -> Result<Vec<usize>, Report> {
+        let Some((name, slot)) = module.manifest.slots.get_index(index) else {
+            return Ok(Vec::new());
+        };
+        let given = node.fill.get(name);
+        let standing = Standing {
+            slot: index,
+            given: given.is_some(),
+            ..Standing::default()
+        };
+        let filling = match (given, &slot.default) {
+            (Some(filling), _) => filling,
             (None, Some(default)) => {
-                let at = Place::new(&module.source).keys(&["slots", name, "default"]);
-                if let Some(circle) = circle(&self.defaults, module, &at) {
+                let at = || self.tree.filling_place(owner, standing);
+                if let Some(circle) = circle(&self.defaults, module, at) {
                     return Err(circle);
                 }
-                (default, at)
+                default
             }
             (None, None) if slot.arity == Arity::Single => {
-                return Err(missing_filling(self.catalog, module, name, slot, place));
+                return Err(missing_filling(self.catalog, module, name, slot, &self.tree.place(owner)));
             }
             (None, None) => return Ok(Vec::new()),
         };
@@ -124,26 +120,24 @@ impl Resolver<'_> {
             Arity::List => 0..=limits::LIST_LENGTH,
         };
         if !takes.contains(&nodes.len()) {
+            let at = self.tree.filling_place(owner, standing);
             return Err(wrong_number(nodes.len(), (name, slot.arity), module, &at));
         }
-        let is_default = by_recipe.is_none();
-        if is_default {
+        if given.is_none() {
             self.defaults.push(Arc::clone(module));
         }
         let mut filled = Vec::with_capacity(nodes.len());
-        for (index, child) in nodes.iter().enumerate() {
-            let at = if many { at.then(Way::Index(index)) } else { at.clone() };
-            let path = if module.category.is_empty() {
-                path.to_owned()
-            } else if slot.arity == Arity::List {
-                format!("{path}.{name}[{index}]")
-            } else {
-                format!("{path}.{name}")
+        for (position, child) in nodes.iter().enumerate() {
+            let standing = Standing {
+                position,
+                many,
+                ..standing
             };
-            let module = self.catalog.module_at(&child.module, Some((&slot.interface, name)), &at)?;
-            filled.push(self.node(module, child, Some(owner), path, at, depth + 1)?);
+            let at = || self.tree.standing_place(owner, standing);
+            let module = self.catalog.module_at(&child.module, Some((&slot.interface, name)), at)?;
+            filled.push(self.node(module, child, Some(owner), standing, depth + 1)?);
         }
-        if is_default {
+        if given.is_none() {
             self.defaults.pop();
         }
         Ok(filled)
@@ -172,9 +166,10 @@ pub fn bad_label(label: &str, place: &Place) -> Report {
 }
 
 /// Finds names that are no slots of a module.
-pub fn unknown_slots<'a>(module: &Module, names: impl IntoIterator<Item = &'a String>, place: &Place) -> Result<(), Report> {
+pub fn unknown_slots<'a>(module: &Module, names: impl IntoIterator<Item = &'a String>, place: impl Fn() -> Place) -> Result<(), Report> {
     for name in names {
         if !module.manifest.slots.contains_key(name) {
+            let place = place();
             let known: Vec<&str> = module.manifest.slots.keys().map(String::as_str).collect();
             let span = place.keys(&["fill", name]).key_span();
             return Err(
@@ -189,8 +184,9 @@ pub fn unknown_slots<'a>(module: &Module, names: impl IntoIterator<Item = &'a St
 }
 
 /// The error about a module whose default leads back to it, if it does. `defaults` are the modules whose defaults are being expanded.
-pub fn circle(defaults: &[Arc<Module>], module: &Module, at: &Place) -> Option<Report> {
+pub fn circle(defaults: &[Arc<Module>], module: &Module, at: impl Fn() -> Place) -> Option<Report> {
     let first = defaults.iter().position(|m| m.name == module.name)?;
+    let at = at();
     let circle = defaults[first..].iter().map(AsRef::as_ref).chain([module]);
     let circle: Vec<&str> = circle.map(|m| m.name.as_str()).collect();
     Some(
@@ -237,11 +233,11 @@ fn list_or_none(names: &[String]) -> String {
 }
 
 /// Finds names that are no parameters of a module.
-pub fn unknown_params<'a>(module: &Module, names: impl IntoIterator<Item = &'a String>, place: &Place) -> Result<(), Report> {
+pub fn unknown_params<'a>(module: &Module, names: impl IntoIterator<Item = &'a String>, place: impl Fn() -> Place) -> Result<(), Report> {
     let manifest = &module.manifest;
     for name in names {
         if !manifest.params.contains_key(name) {
-            let at = place.keys(&["freeze", name]);
+            let at = place().keys(&["freeze", name]);
             if manifest.instances.contains_key(name) {
                 return Err(
                     Diagnostic::new(codes::INSTANCE_FIELD_FROZEN, format!("`{name}` differs from instance to instance"))
@@ -262,17 +258,24 @@ pub fn unknown_params<'a>(module: &Module, names: impl IntoIterator<Item = &'a S
 }
 
 /// Parameters that are constants in this node.
-fn constants(module: &Module, node: &Node, place: &Place) -> Result<IndexMap<String, (Value, Typed)>, Report> {
-    unknown_params(module, node.freeze.keys(), place)?;
+fn constants(module: &Module, node: &Node, place: impl Fn() -> Place) -> Result<IndexMap<String, (Value, Typed)>, Report> {
+    unknown_params(module, node.freeze.keys(), &place)?;
     let manifest = &module.manifest;
     let mut constants = IndexMap::new();
     for (name, param) in &manifest.params {
-        let (value, at) = match node.freeze.get(name) {
-            Some(value) => (value, place.keys(&["freeze", name])),
-            None if param.mode == ParamMode::Constant => (&param.default, Place::new(&module.source).keys(&["params", name, "default"])),
+        let frozen = node.freeze.get(name);
+        let value = match frozen {
+            Some(value) => value,
+            None if param.mode == ParamMode::Constant => &param.default,
             None => continue,
         };
-        let typed = typed(param, value).map_err(|error| Report::from(error.diagnostic(name, &at.file, at.span())))?;
+        let typed = typed(param, value).map_err(|error| {
+            let at = match frozen {
+                Some(_) => place().keys(&["freeze", name]),
+                None => Place::new(&module.source).keys(&["params", name, "default"]),
+            };
+            Report::from(error.diagnostic(name, &at.file, at.span()))
+        })?;
         constants.insert(name.clone(), (value.clone(), typed));
     }
     Ok(constants)

@@ -91,12 +91,11 @@ fn structures(tree: &Tree) -> Vec<usize> {
     let mut numbers = vec![0; tree.nodes.len()];
     let mut known = HashMap::default();
     for (index, node) in tree.nodes.iter().enumerate().rev() {
-        let constants: Vec<(&str, String)> = node.constants.iter().map(|(n, (_, value))| (n.as_str(), value.wgsl())).collect();
         // Of one module the slots are the same, in one order.
         let slots = node.fills.iter().map(|nodes| nodes.iter().map(|&child| numbers[child]).collect());
         let slots: Vec<Vec<usize>> = slots.collect();
         let next = known.len();
-        let key = (&node.module.category, &node.module.name, &node.label, constants, slots);
+        let key = (&node.module.category, &node.module.name, &node.label, &node.variant, slots);
         numbers[index] = *known.entry(key).or_insert(next);
     }
     numbers

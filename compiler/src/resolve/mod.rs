@@ -5,14 +5,15 @@ mod instances;
 mod resources;
 pub mod rules;
 
+use std::fmt::Write as _;
 use std::ops::Range;
 use std::sync::Arc;
 
 use indexmap::IndexMap;
 
-use crate::catalog::Module;
+use crate::catalog::{Constants, Module};
 use crate::diagnostics::SourceFile;
-use crate::manifest::{Locator, Slot, Step, Typed, Value};
+use crate::manifest::{Arity, Locator, Slot, Step, Typed, Value};
 
 pub use fill::{resolve, resolve_root};
 pub use instances::{Instance, Instances};
@@ -27,8 +28,7 @@ pub enum Way {
     Index(usize),
 }
 
-/// A place in a RON text: where a node was named. Cheap to make, since most are never looked up: further places share the
-/// way to the nearer ones.
+/// A place in a RON text: where a node was named. Further places share the way to the nearer ones.
 #[derive(Clone, Debug)]
 pub struct Place {
     /// The text.
@@ -114,16 +114,29 @@ pub struct TreeNode {
     pub module: Arc<Module>,
     /// Owner of the slot that it stands in.
     pub parent: Option<usize>,
-    /// Where it stands: `main`, `main.brdf.ndf`, `main.lights[1]`.
-    pub path: String,
+    /// How it stands there; of no meaning for the root.
+    pub standing: Standing,
     /// What stands in its slots, as tree nodes: in the order of the manifest's slots.
     pub fills: Vec<Vec<usize>>,
     /// Parameters that are constants here, with their values: frozen ones and those that are always constants.
     pub constants: IndexMap<String, (Value, Typed)>,
+    /// What tells these constants from others.
+    pub variant: Constants,
     /// Keeps it apart from an equal subtree.
     pub label: Option<String>,
-    /// Where it was named.
-    pub place: Place,
+}
+
+/// How a node stands in its parent's slot.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Standing {
+    /// The slot, by its number in the parent's manifest.
+    pub slot: usize,
+    /// Whether the node that the parent was made from fills it, and not the slot's default.
+    pub given: bool,
+    /// Its position in that filling.
+    pub position: usize,
+    /// Whether the filling is a list.
+    pub many: bool,
 }
 
 impl TreeNode {
@@ -139,4 +152,67 @@ impl TreeNode {
 pub struct Tree {
     /// The nodes.
     pub nodes: Vec<TreeNode>,
+    /// Where the root was named.
+    root: Place,
+}
+
+impl Tree {
+    /// Where a node was named.
+    pub fn place(&self, node: usize) -> Place {
+        let TreeNode { parent, standing, .. } = self.nodes[node];
+        match parent {
+            Some(parent) => self.standing_place(parent, standing),
+            None => self.root.clone(),
+        }
+    }
+
+    /// Where what stands so in a slot was named.
+    fn standing_place(&self, parent: usize, standing: Standing) -> Place {
+        let filling = self.filling_place(parent, standing);
+        if standing.many {
+            filling.into(Way::Index(standing.position))
+        } else {
+            filling
+        }
+    }
+
+    /// Where the whole filling of a slot stands.
+    fn filling_place(&self, parent: usize, Standing { slot, given, .. }: Standing) -> Place {
+        let module = &self.nodes[parent].module;
+        let name = module.manifest.slots.get_index(slot).map_or("", |(name, _)| name);
+        match given {
+            // A module that the compiler made stands around the recipe: what fills it is the recipe's own root.
+            true if module.category.is_empty() => self.place(parent),
+            true => self.place(parent).keys(&["fill", name]),
+            false => Place::new(&module.source).keys(&["slots", name, "default"]),
+        }
+    }
+
+    /// Where a node stands: `main`, `main.brdf.ndf`, `main.lights[1]`.
+    pub fn path(&self, node: usize) -> String {
+        let mut path = String::new();
+        self.write_path(node, &mut path);
+        path
+    }
+
+    /// The same, behind other text.
+    pub fn write_path(&self, node: usize, into: &mut String) {
+        let TreeNode { parent, standing, .. } = self.nodes[node];
+        let Some(parent) = parent else {
+            into.push_str("main");
+            return;
+        };
+        self.write_path(parent, into);
+        let module = &self.nodes[parent].module;
+        if let Some((name, slot)) = module.manifest.slots.get_index(standing.slot)
+            && !module.category.is_empty()
+        {
+            into.push('.');
+            into.push_str(name);
+            if slot.arity == Arity::List {
+                // Infallible: writing to a string.
+                let _ = write!(into, "[{}]", standing.position);
+            }
+        }
+    }
 }

@@ -25,12 +25,12 @@ fn labels(tree: &Tree) -> Result<(), Report> {
         let Some(label) = &node.label else { continue };
         let first = *known.entry((&node.module.category, &node.module.name, label)).or_insert(index);
         if !equal(tree, first, index) {
-            let other = &tree.nodes[first].place;
+            let (place, other) = (tree.place(index), tree.place(first));
             return Err(Diagnostic::new(
                 codes::BAD_LABEL,
                 format!("the label `{label}` stands at two different subtrees of `{}`", node.module.name),
             )
-            .at(&node.place.file, node.place.keys(&["label"]).span(), "the second one")
+            .at(&place.file, place.keys(&["label"]).span(), "the second one")
             .at(&other.file, other.keys(&["label"]).span(), "the first one")
             .note("a label names one subtree, wherever it stands: choose another one here")
             .into());
@@ -41,17 +41,11 @@ fn labels(tree: &Tree) -> Result<(), Report> {
 
 fn equal(tree: &Tree, a: usize, b: usize) -> bool {
     let (x, y) = (&tree.nodes[a], &tree.nodes[b]);
-    let values = |node: &TreeNode| {
-        node.constants
-            .iter()
-            .map(|(name, (_, value))| (name.clone(), value.wgsl()))
-            .collect::<Vec<_>>()
-    };
     let (p, q) = (&x.fills, &y.fills);
     a == b
         || Arc::ptr_eq(&x.module, &y.module)
             && x.label == y.label
-            && values(x) == values(y)
+            && x.variant == y.variant
             && p.iter().map(Vec::len).eq(q.iter().map(Vec::len))
             && p.iter().flatten().zip(q.iter().flatten()).all(|(&c, &d)| equal(tree, c, d))
 }
@@ -70,7 +64,7 @@ fn check_rule(tree: &Tree, index: usize, node: &TreeNode, rule: &Rule) -> Result
         there && has_tag(&candidate.module, tag)
     });
     let name = &node.module.name;
-    let place = match among {
+    let among_words = match among {
         Among::Parent => "the module whose slot it fills",
         Among::Children => "the modules in its slots",
         Among::Tree => "the tree",
@@ -79,22 +73,19 @@ fn check_rule(tree: &Tree, index: usize, node: &TreeNode, rule: &Rule) -> Result
     if wanted && among == Among::Parent && node.parent.is_none_or(|p| tree.nodes[p].module.category.is_empty()) {
         return Ok(());
     }
+    let broken = |message: String| {
+        let place = tree.place(index);
+        Diagnostic::new(codes::RULE_BROKEN, message).at(&place.file, place.span(), format!("`{name}` stands here"))
+    };
     match (wanted, found) {
-        (true, None) => Err(
-            Diagnostic::new(codes::RULE_BROKEN, format!("`{name}` requires `{tag}` in {place}: {because}"))
-                .at(&node.place.file, node.place.span(), format!("`{name}` stands here"))
-                .into(),
-        ),
-        (false, Some((_, other))) => Err(
-            Diagnostic::new(codes::RULE_BROKEN, format!("`{name}` excludes `{tag}` in {place}: {because}"))
-                .at(&node.place.file, node.place.span(), format!("`{name}` stands here"))
-                .at(
-                    &other.place.file,
-                    other.place.span(),
-                    format!("`{}` stands here", other.module.name),
-                )
-                .into(),
-        ),
+        (true, None) => Err(broken(format!("`{name}` requires `{tag}` in {among_words}: {because}")).into()),
+        (false, Some((other, candidate))) => {
+            let there = tree.place(other);
+            let text = format!("`{}` stands here", candidate.module.name);
+            Err(broken(format!("`{name}` excludes `{tag}` in {among_words}: {because}"))
+                .at(&there.file, there.span(), text)
+                .into())
+        }
         _ => Ok(()),
     }
 }

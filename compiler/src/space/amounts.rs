@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use naga::{AddressSpace, TypeInner};
 
-use crate::catalog::{Catalog, Module};
+use crate::catalog::{Catalog, Module, Variants};
 use crate::diagnostics::Report;
 use crate::limits::INSTANCES;
 use crate::manifest::{ParamMode, default_of};
@@ -60,7 +60,7 @@ pub fn of_module(catalog: &Catalog, module: &std::sync::Arc<Module>, limits: &Li
             constants.insert(name.clone(), (param.default.clone(), value));
         }
     }
-    let unit = catalog.unit(module, &constants)?;
+    let unit = catalog.unit(module, &constants, &Variants::key(&constants))?;
     add_resources(&unit, &mut amounts);
     if !module.manifest.instances.is_empty() {
         amounts[STORAGE] += 1;

@@ -261,9 +261,9 @@ impl Opener<'_> {
 
     fn written(&mut self, node: &SpaceNode, around: &Around, place: &Place) -> Result<Option<ExprId>, Report> {
         let hole = around.hole.as_ref().map(|(interface, slot, _)| (interface.as_str(), slot.as_str()));
-        let module = self.catalog.module_at(&node.module, hole, place)?;
-        unknown_slots(&module, node.fill.keys(), place)?;
-        unknown_params(&module, node.freeze.keys(), place)?;
+        let module = self.catalog.module_at(&node.module, hole, || place.clone())?;
+        unknown_slots(&module, node.fill.keys(), || place.clone())?;
+        unknown_params(&module, node.freeze.keys(), || place.clone())?;
         if let Some(label) = node.label.as_ref().filter(|label| !is_identifier(label)) {
             return Err(bad_label(label, place));
         }
@@ -428,7 +428,7 @@ impl Opener<'_> {
             }
             (None, _, Some(default)) => {
                 let at = Place::new(&module.source).keys(&["slots", name, "default"]);
-                if let Some(circle) = circle(&self.defaults, module, &at) {
+                if let Some(circle) = circle(&self.defaults, module, || at.clone()) {
                     return if around.quiet { Ok(None) } else { Err(circle) };
                 }
                 self.defaults.push(Arc::clone(module));

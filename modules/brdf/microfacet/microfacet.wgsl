@@ -8,3 +8,26 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     let facets = distribution(s, h) * masking(s, v, l, h);
     return fresnel(s, dot(v, h)) * facets + diffuse(s, v, l);
 }
+
+/// Share of the samples that facets draw, the others the diffuse part: by how much they reflect, seen from v. The floor keeps black from 0 / 0.
+fn facet_share(s: Surface, v: vec3f) -> f32 {
+    let facets = luminance(fresnel(s, dot(s.normal, v)));
+    return facets / max(facets + luminance(s.diffuse), 1e-20);
+}
+
+/// The mirror direction about a facet that v sees, or a direction by the cosine.
+fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
+    let share = facet_share(s, v);
+    if u.x < share {
+        return reflect(-v, facet_sample(s, v, vec2f(u.x / share, u.y)));
+    }
+    return cosine_sample(s.normal, vec2f((u.x - share) / (1.0 - share), u.y));
+}
+
+/// The facets' density, by the Jacobian of the mirror 1 / (4 v.h) (Walter et al. 2007, eq. 14), and the cosine's, each by its share.
+fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
+    let h = unit_or(v + l, s.normal);
+    // Where l is opposite to v no facet mirrors one into the other.
+    let facets = facet_pdf(s, v, h) / max(4.0 * dot(v, h), 1e-12);
+    return mix(cosine_pdf(s.normal, l), facets, facet_share(s, v));
+}

@@ -18,6 +18,8 @@ fn surface(at: Fragment) -> Surface {
     s.diffuse = base.rgb * (1.0 - metalness);
     s.f0 = mix(vec3f(params.reflectance), base.rgb, metalness);
     s.alpha = max(roughness * roughness, MIN_ALPHA);
+    s.tangent = unit_or(at.tangent.xyz - s.normal * dot(s.normal, at.tangent.xyz), frame_of(s.normal)[0]);
+    s.widths = vec2f(s.alpha);
     s.emission = emission_modulate(vec4f(params.emission_color, 1.0), at).rgb * params.emission;
     s.opacity = base.a;
     return s;

@@ -9,3 +9,24 @@ fn distribution(s: Surface, h: vec3f) -> f32 {
     let k = s.alpha / max(along * along + dot(across, across), 1e-24);
     return select(0.0, k * k * INV_PI, cosine > 0.0);
 }
+
+/// A facet as v sees it: where a sphere's cap is lit from the stretched v, and unstretched again. Dupuy and Benyoub 2023, listing 3.
+fn facet_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
+    let frame = frame_of(s.normal);
+    let local = v * frame;
+    let stretched = normalize(vec3f(s.alpha * local.xy, local.z));
+    let turn = 2.0 * PI * u.x;
+    let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
+    let radius = sqrt(max(1.0 - z * z, 0.0));
+    let cap = vec3f(radius * cos(turn), radius * sin(turn), z) + stretched;
+    // Opposite to v the sum vanishes; it has no weight there.
+    return frame * unit_or(vec3f(s.alpha * cap.xy, max(cap.z, 0.0)), vec3f(0.0, 0.0, 1.0));
+}
+
+/// G1(v) v.h D(h) / n.v, 1/sr (Heitz 2014, eq. 16), with Smith's G1 = 2 n.v / (n.v + sqrt(alpha^2 + (1 - alpha^2) (n.v)^2)): n.v cancels.
+fn facet_pdf(s: Surface, v: vec3f, h: vec3f) -> f32 {
+    let n_dot_v = max(dot(s.normal, v), 0.0);
+    let a2 = s.alpha * s.alpha;
+    let projected = n_dot_v + sqrt(a2 + (1.0 - a2) * n_dot_v * n_dot_v);
+    return 2.0 * max(dot(v, h), 0.0) * distribution(s, h) / max(projected, 1e-12);
+}

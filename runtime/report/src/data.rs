@@ -1,10 +1,20 @@
 //! What a report says: plain data, written as JSON and drawn as a page.
 //!
-//! Numbers that are not finite have no place in JSON: they are `null` there, and a count says that they were.
+//! Numbers that are not finite have no place in JSON: they are `null` there, and a count says that they were. Read again, such a `null` is NaN.
 
 use indexmap::IndexMap;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 pub use shadewright_evaluate::cost::Cost;
+
+/// A number that is `null` where it was not finite.
+fn or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
+}
+
+/// Two of these.
+fn pair_or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 2], D::Error> {
+    Ok(<[Option<f64>; 2]>::deserialize(deserializer)?.map(|number| number.unwrap_or(f64::NAN)))
+}
 
 /// A whole report.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -59,6 +69,8 @@ pub struct Results {
     pub hard: usize,
     /// Seed of the sampling.
     pub seed: u64,
+    /// Whether all rows have one truth: if not, none is better than another.
+    pub comparable: bool,
     /// Label of the row whose time is 1.
     pub baseline: String,
     /// One for each alternative.
@@ -80,7 +92,8 @@ pub struct Row {
     pub rounding: Option<Errors>,
     /// The same with the evaluator's f32, which is the same on every machine.
     pub rounding_cpu: Errors,
-    /// The largest relative error that WGSL's accuracy table allows a driver to make of it, over the configurations; none where a branch hangs on it.
+    /// The error that WGSL's accuracy table allows a driver to make of it, not exceeded by 95 % of the numbers (elsewhere a branch may go either
+    /// way); none where it allows anything.
     pub allowed: Option<f64>,
     /// What happened at hard inputs, and everywhere else.
     pub verdict: Verdict,
@@ -96,18 +109,36 @@ pub struct Row {
     pub picture: Option<Picture>,
 }
 
+impl Row {
+    /// Error of the result, RMS: of model and of rounding together, which have nothing to do with each other. The evaluator's rounding, so that
+    /// it is the same on every machine.
+    pub fn error(&self) -> f64 {
+        self.model.as_ref().map_or(0.0, |errors| errors.rms).hypot(self.rounding_cpu.rms)
+    }
+
+    /// Whether the formula is another than the truth, by more than what rounding makes of it.
+    pub fn is_approximate(&self) -> bool {
+        self.model.as_ref().is_some_and(|errors| errors.rms > 4.0 * self.rounding_cpu.rms)
+    }
+}
+
 /// Statistics of an error over the configurations, in the experiment's metric.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
     /// Root of the mean square.
+    #[serde(deserialize_with = "or_nan")]
     pub rms: f64,
     /// Not exceeded by 95 % of the configurations.
+    #[serde(deserialize_with = "or_nan")]
     pub p95: f64,
     /// Largest among the sampled and hard configurations.
+    #[serde(deserialize_with = "or_nan")]
     pub max: f64,
     /// Mean with its sign: above 0, the module is too high.
+    #[serde(deserialize_with = "or_nan")]
     pub bias: f64,
     /// Largest that a search found, at least `max`.
+    #[serde(deserialize_with = "or_nan")]
     pub searched: f64,
     /// Where that is.
     pub worst: Worst,
@@ -153,12 +184,16 @@ pub struct Fault {
 #[serde(default)]
 pub struct Executed {
     /// Mean of the weighted sum of operations. The weights stand in `spec/report.md`.
+    #[serde(deserialize_with = "or_nan")]
     pub mean: f64,
     /// Its largest.
+    #[serde(deserialize_with = "or_nan")]
     pub max: f64,
     /// Mean trips of loops.
+    #[serde(deserialize_with = "or_nan")]
     pub trips: f64,
     /// Mean texture reads.
+    #[serde(deserialize_with = "or_nan")]
     pub texture: f64,
 }
 
@@ -166,19 +201,24 @@ pub struct Executed {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Time {
     /// Median of the ratios.
+    #[serde(deserialize_with = "or_nan")]
     pub median: f64,
     /// 10 % of the ratios are below.
+    #[serde(deserialize_with = "or_nan")]
     pub p10: f64,
     /// 10 % are above.
+    #[serde(deserialize_with = "or_nan")]
     pub p90: f64,
     /// Median in nanoseconds a call, inputs' fetch and result's store included.
+    #[serde(deserialize_with = "or_nan")]
     pub nanoseconds: f64,
 }
 
 /// A plane through the domain: errors of a grid, row by row from the top.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
-    /// Names of the inputs along x and y, with their ranges at the picture's edges: `alpha 1e-4 to 1 (log)`.
+    /// Names of the inputs along x and y, with their ranges from the left edge to the right one, and from the lower edge to the upper one:
+    /// `alpha 1e-4 to 1 (log)`.
     pub axes: [String; 2],
     /// Columns.
     pub width: usize,
@@ -186,7 +226,8 @@ pub struct Picture {
     pub height: usize,
     /// Errors; null where the module's value is not finite.
     pub errors: Vec<Option<f64>>,
-    /// Where the worst input is, in columns and rows.
+    /// Where the worst input is, in columns and rows; whole numbers are the middles of cells.
+    #[serde(deserialize_with = "pair_or_nan")]
     pub worst: [f64; 2],
     /// `model` or `rounding`.
     pub of: String,
@@ -195,8 +236,10 @@ pub struct Picture {
 /// Device against evaluator for one function of one module.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
-    /// Module, `category/name`.
+    /// Experiment and label of the row.
     pub module: String,
+    /// Its recipe.
+    pub recipe: String,
     /// Function.
     pub function: String,
     /// Results compared, one for each number.
@@ -208,6 +251,7 @@ pub struct Agreement {
     /// Undecided: a branch hangs on a rounding, so anything goes.
     pub undecided: usize,
     /// Largest difference in units in the last place, among those inside.
+    #[serde(deserialize_with = "or_nan")]
     pub ulps: f64,
     /// Where the largest is, or one of those outside.
     pub worst: Option<Worst>,

@@ -3,14 +3,12 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use serde::Serialize;
-
 use super::render::Renderer;
 use crate::gpu::timer::{PENDING, PassTimes};
 use crate::gpu::{Gpu, GpuError, Timer};
 
 /// Times of one frame.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FrameTimes {
     /// On the GPU, in the order in which they ran.
     pub passes: Vec<PassTime>,
@@ -19,7 +17,7 @@ pub struct FrameTimes {
 }
 
 /// One pass on the GPU.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PassTime {
     /// `shadow map of lamp 1, view 3 of 6`, `scene (forward)`, `log_average.measure`, `display (display)`.
     pub name: String,
@@ -28,7 +26,7 @@ pub struct PassTime {
 }
 
 /// What the CPU did for a frame. What was there already costs next to nothing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CpuTimes {
     /// Linking programs, and planning passes and views.
     pub link: Duration,

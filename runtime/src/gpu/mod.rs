@@ -17,4 +17,4 @@ pub use device::Gpu;
 pub(crate) use device::lock;
 pub use error::{DataError, GpuError, RuntimeError};
 pub use kept::Counts;
-pub use timer::Timer;
+pub(crate) use timer::Timer;

@@ -11,7 +11,7 @@ use super::{Gpu, GpuError};
 pub(crate) const PENDING: usize = 3;
 
 /// Times passes. What it measures are the GPU's own timestamps at a pass's beginning and end; on a software driver those of the CPU that runs it.
-pub struct Timer {
+pub(crate) struct Timer {
     profiler: GpuProfiler,
     gpu: Gpu,
 }

@@ -189,6 +189,47 @@ fn a_struct_comes_back_as_its_numbers() {
     assert_eq!(got[2], [-6.0, 3.0, 0.25, 4.0, 1.0, 2.0, 3.0, -6.0, -7.0, 8.0]);
 }
 
+/// Catches lists of instances that go to another module's buffer where there are two.
+#[test]
+fn two_modules_have_instances_of_their_own() {
+    let catalog = catalog(&[
+        ("tested/category.ron", "(summary: \"tested\", order: 1, group: 2)"),
+        ("tested/interface.wgsl", "fn eval(x: f32) -> f32 { return 0.0; }"),
+        (
+            "tested/inner/module.ron",
+            "(summary: \"tested\", instances: {\"power\": (type: F32, default: 0.25)})",
+        ),
+        (
+            "tested/inner/inner.wgsl",
+            "fn eval(x: f32) -> f32 { return instances[0].power * x; }",
+        ),
+        (
+            "tested/outer/module.ron",
+            "(summary: \"tested\", slots: {\"below\": (interface: \"tested\", default: \"inner\", prefix: \"below_\")},
+              instances: {\"gain\": (type: F32, default: 1.0)})",
+        ),
+        (
+            "tested/outer/outer.wgsl",
+            "fn eval(x: f32) -> f32 { return 10.0 * instances[0].gain + below_eval(x); }",
+        ),
+    ]);
+    let probe = Probe::new(&catalog, &Recipe::parse("test", "\"outer\"").unwrap(), "eval").unwrap();
+    let table = probe.table(&[
+        json!({"x": 1}),
+        json!({"x": 1, "instances": {"inner": [{"power": 2}]}}),
+        json!({"x": 1, "instances": {"inner": [{"power": 2}], "outer": [{"gain": 3}]}}),
+    ]);
+    let got = probe.on_gpu(&Pipelines::new(&gpu(), None), &gpu(), &table.unwrap()).unwrap();
+    assert_eq!(got, [[10.25], [12.0], [32.0]]);
+    assert_eq!(
+        probe
+            .table(&[json!({"x": 1, "instances": [{"power": 2}]})])
+            .unwrap_err()
+            .to_string(),
+        "[0].instances: several modules have instances: expected an object with a list for each"
+    );
+}
+
 /// Catches a probe without arguments that has no rows, and an empty table that is an error.
 #[test]
 fn a_function_without_arguments_has_rows_too() {
@@ -243,7 +284,17 @@ fn times_are_told_apart() {
     // No device needs a millisecond or less than a hundredth of a nanosecond for 300 sines.
     assert!(times[0].iter().all(|t| (0.01..1e6).contains(t)), "{times:?}");
 
-    stop.store(true, Ordering::Relaxed);
+    // So many repetitions would take a minute.
+    let many_times = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(std::time::Duration::from_millis(400));
+            stop.store(true, Ordering::Relaxed);
+        });
+        time(&pipelines, &gpu(), &[(&slow, &few), (&fast, &many)], 10_000, &stop)
+            .unwrap()
+            .unwrap()
+    });
+    assert!(many_times[0].len() < 10_000 && many_times[0].len() == many_times[1].len());
     let none = time(&pipelines, &gpu(), &[(&slow, &few), (&fast, &many)], 7, &stop).unwrap();
     assert_eq!(none, Some(vec![vec![], vec![]]));
     stop.store(false, Ordering::Relaxed);

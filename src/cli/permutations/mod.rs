@@ -1,7 +1,6 @@
 //! `permutations`: counts, lists, checks or writes the permutations of a space.
 
 mod store;
-mod watch;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -15,8 +14,8 @@ use shadewright::compiler::space::{Chosen, Passes, Permutation, Space, Work, com
 use super::emit::Language;
 use super::failure::Failure;
 use super::output::{json, say, say_json, write_stdout};
+use super::watch::Watch;
 use super::{Context, Format, input};
-use watch::Watch;
 
 /// Permutations that are compiled before their results are put in order and written.
 const CHUNK: usize = 256;
@@ -210,7 +209,7 @@ struct Outcome {
 
 fn check(context: &Context, space: &Space, options: &Options) -> Result<(), Failure> {
     let chosen = sampled(space, options)?;
-    let watch = Watch::new(chosen.number);
+    let watch = Watch::new(chosen.number, "permutations");
     let mut tally = Tally::default();
     let mut iter = chosen.iter;
     loop {

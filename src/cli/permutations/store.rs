@@ -15,8 +15,8 @@ use siphasher::sip128::{Hasher128, SipHasher13};
 use super::super::emit::{Language, shader};
 use super::super::failure::Failure;
 use super::super::output::{Outputs, json, say, say_json};
+use super::super::watch::Watch;
 use super::super::{Context, Format};
-use super::watch::Watch;
 use super::{CHUNK, Options, Tally, index, sampled};
 
 /// Version of the manifest's form.
@@ -114,7 +114,7 @@ pub fn emit(context: &Context, space: &Space, options: &Options, folder: &Path) 
         reused: 0,
         noted: Instant::now(),
     };
-    let watch = Watch::new(drawn.number);
+    let watch = Watch::new(drawn.number, "permutations");
     let mut iter = drawn.iter;
     let mut interrupted = false;
     while !interrupted {

@@ -180,10 +180,10 @@ fn bound(module: &Module, info: &FunctionInfo, mut cost: Cost) -> Cost {
         if global.binding.is_none() || info[handle].is_empty() {
             continue;
         }
-        cost.bindings += 1;
+        cost.bindings = cost.bindings.saturating_add(1);
         let inner = &module.types[global.ty].inner;
         match (global.space, inner) {
-            (AddressSpace::Uniform, _) => cost.uniform_bytes += inner.size(module.to_ctx()),
+            (AddressSpace::Uniform, _) => cost.uniform_bytes = cost.uniform_bytes.saturating_add(inner.size(module.to_ctx())),
             (AddressSpace::Storage { .. }, _) => cost.storage_buffers += 1,
             (_, TypeInner::Image { .. }) => cost.textures += 1,
             _ => {}

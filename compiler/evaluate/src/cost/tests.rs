@@ -179,11 +179,22 @@ fn constant_loops_are_counted() {
     assert_eq!(trips("var i = 0; i < 5; i++", "", "i += 1;"), [(None, false)]);
     assert_eq!(trips("var i = 0; i < 5; i++", "", "if n > 2 { i = 0; }"), [(None, false)]);
     assert_eq!(trips("var i = 0; i < 5; i++", "", "touch(&i);"), [(None, false)]);
+    // Looked at as a tree, the exit has 2^50 leaves.
+    let doubled: String = (1..=50).map(|n| format!("let a{n} = a{} + a{};", n - 1, n - 1)).collect();
+    let found = analysis(&format!(
+        "fn f() -> f32 {{ var i = 1u; loop {{ let a0 = i; {doubled} if a50 == 7u {{ break; }} continuing {{ i++; }} }} return 1.0; }}"
+    ));
+    assert_eq!(found.loops[0].trips, None);
     // The counter as it was before the loop.
     assert_eq!(trips("; j < 5; j++", "var j = 0; j = 2;", ""), [(Some(3), false)]);
     assert_eq!(trips("; j < 5; j++", "var j = 0; if n > 1 { j = 2; }", ""), [(None, false)]);
     assert_eq!(trips("; j < 5; j++", "var j = 0; touch(&j);", ""), [(None, false)]);
     assert_eq!(trips("; j < 5; j++", "var j = 0;", ""), [(Some(5), false)]);
+    assert_eq!(trips("; j < 5; j++", "var j = 0; j = 2;", "j += 1;"), [(None, false)]);
+    assert_eq!(trips("; j < 5; j++", "var j = 0; j = 2; if n > 1 { j = 3; }", ""), [(None, false)]);
+    // An exit that says when to leave, not when to stay.
+    let leaving = analysis("fn f() -> f32 { var i = 1; loop { if i > 5 { break; } continuing { i += 2; } } return 1.0; }");
+    assert_eq!(leaving.loops[0].trips, Some(3));
 }
 
 /// Catches a body that counts with its trips where it should count once, and the other way round; and nested loops that are not multiplied,

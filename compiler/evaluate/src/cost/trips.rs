@@ -3,6 +3,8 @@
 //! `for (var i = a; i < b; i += c)` with constants: the loop's body begins with an exit that compares the counter, its continuing part is
 //! the only place that changes the counter, and the counter's first value is constant. Then the counting is done here, step by step.
 
+use std::cell::Cell;
+
 use naga::{
     BinaryOperator as B, Block, Expression, Function, Handle, Literal, LocalVariable, MathFunction as M, Module, ScalarKind, Statement,
     TypeInner, UnaryOperator,
@@ -10,6 +12,8 @@ use naga::{
 
 /// A loop that counts further is left alone.
 const MOST: u32 = 1 << 16;
+/// And one whose counting takes more evaluations of expressions: values that stand for doubled values grow without end.
+const EFFORT: u32 = 1 << 20;
 /// Deeper expressions are left alone.
 const DEEPEST: u32 = 64;
 
@@ -27,6 +31,8 @@ pub(super) struct Trips<'m> {
     module: &'m Module,
     function: &'m Function,
     counter: Handle<LocalVariable>,
+    /// Evaluations left.
+    effort: Cell<u32>,
 }
 
 impl<'m> Trips<'m> {
@@ -40,7 +46,12 @@ impl<'m> Trips<'m> {
             Statement::Store { pointer, value } => Some((local(function, *pointer)?, *value)),
             _ => None,
         })?;
-        let trips = Self { module, function, counter };
+        let trips = Self {
+            module,
+            function,
+            counter,
+            effort: Cell::new(EFFORT),
+        };
         let inside = trips.changes(body) + trips.changes(continuing);
         if inside != 1 {
             return None;
@@ -88,6 +99,7 @@ impl<'m> Trips<'m> {
 
     /// A constant expression, or one of constants and the counter.
     fn value(&self, handle: Handle<Expression>, counter: Option<Number>, depth: u32) -> Option<Number> {
+        self.effort.set(self.effort.get().checked_sub(1)?);
         if depth > DEEPEST {
             return None;
         }

@@ -85,11 +85,12 @@ pub struct Surface {
 }
 
 /// F D G / (4 n.l n.v) + diffuse, 1/sr, with GGX, Smith correlated, Schlick and Lambert. Walter et al. 2007, eq. 20.
+/// `v` and `l` are unit vectors, as good as that.
 pub fn microfacet(s: &Surface, v: DVec3, l: DVec3) -> f64 {
     if s.normal.dot(v) <= 0.0 || s.normal.dot(l) <= 0.0 {
         return 0.0;
     }
-    let h = v.normalize() + l.normalize();
+    let h = v + l;
     let d = ggx_d(s.alpha, angle(s.normal, h));
     schlick(s.f0, angle(v, h).cos()) * d * ggx_v_correlated(s.alpha, s.normal, v, l) + lambert(s.diffuse)
 }

@@ -1,0 +1,185 @@
+//! `report`: speed against error, over the experiments that the library declares.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use shadewright::report::{self, Baseline, Done, MeasureError, ReportError};
+use shadewright::runtime::gpu::Gpu;
+
+use super::failure::Failure;
+use super::output::{Outputs, say, say_json};
+use super::watch::Watch;
+use super::{Context, Format};
+
+/// Folder in the report's for what is done, so that an interrupted report goes on where it stopped.
+const DONE: &str = ".done";
+
+/// Options of `report`.
+#[derive(Args)]
+pub struct Options {
+    /// Categories to report on; all where none is named
+    categories: Vec<String>,
+    /// Folder for report.html, report.json, rows.csv, plots and pictures
+    #[arg(short, value_name = "DIR", default_value = "report", conflicts_with_all = ["check", "accept"])]
+    output: PathBuf,
+    /// Small samples, and no pictures
+    #[arg(long)]
+    quick: bool,
+    /// Without a GPU: no times, and rounding errors of the evaluator only
+    #[arg(long)]
+    no_device: bool,
+    /// Writes a table in Markdown of what is equal on every machine, too
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+    /// Compares errors and costs with a baseline; what is worse is an error. Small samples, no GPU, no folder
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["accept", "categories"])]
+    check: Option<PathBuf>,
+    /// Writes the baseline that --check compares with
+    #[arg(long, value_name = "FILE", conflicts_with = "categories")]
+    accept: Option<PathBuf>,
+}
+
+/// # Errors
+/// An experiment is wrong, an alternative cannot be measured, there is no GPU, or something is worse than the baseline.
+pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
+    let experiments = report::experiments(&*context.library, &context.catalog)?;
+    let is_baseline = options.check.is_some() || options.accept.is_some();
+    let gpu = if is_baseline || options.no_device {
+        None
+    } else {
+        Some(Gpu::headless()?)
+    };
+    let kept = Kept {
+        folder: (!is_baseline).then(|| options.output.join(DONE)),
+    };
+    let watch = Watch::new(1, "rows");
+    let made = report::run(
+        &context.catalog,
+        &experiments,
+        &report::Options {
+            categories: &options.categories,
+            device: gpu.as_ref(),
+            quick: options.quick || is_baseline,
+            done: &kept,
+            cancel: watch.cancel(),
+            progress: &|done, of, next| watch.at(done, of, next),
+        },
+    );
+    watch.finish();
+    let mut report = made.map_err(|error| failure(error, options))?;
+    if let Some(path) = &options.check {
+        return check(context, path, &Baseline::of(&report));
+    }
+    let mut outputs = Outputs::default();
+    if let Some(path) = &options.accept {
+        outputs.stage(path, Baseline::of(&report).to_json().as_bytes())?;
+    } else {
+        report.provenance.date = now();
+        let files = report::write::files(&report).map_err(|error| Failure::message(error.to_string()))?;
+        for (name, bytes) in files {
+            let path = options.output.join(name);
+            if let Some(folder) = path.parent() {
+                std::fs::create_dir_all(folder).map_err(|error| Failure::message(format!("{}: {error}", folder.display())))?;
+            }
+            outputs.stage(&path, &bytes)?;
+        }
+    }
+    if let Some(path) = &options.markdown {
+        outputs.stage(path, report::write::markdown(&report).as_bytes())?;
+    }
+    outputs.commit()?;
+    match context.format {
+        Format::Json => say_json(&report),
+        Format::Text => say(&summary(&report, options)),
+    }
+}
+
+fn failure(error: ReportError, options: &Options) -> Failure {
+    match error {
+        ReportError::Measure(MeasureError::Interrupted) => Failure::Interrupted(format!(
+            "what was measured is kept in {}; the same command goes on from there",
+            options.output.join(DONE).display()
+        )),
+        ReportError::Measure(MeasureError::Compile(report)) => report.into(),
+        ReportError::Measure(MeasureError::Runtime(error)) => error.into(),
+        other => Failure::message(other.to_string()),
+    }
+}
+
+fn check(context: &Context, path: &Path, now: &Baseline) -> Result<(), Failure> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::message(format!("{}: {error}", path.display())))?;
+    let before = Baseline::read(&path.display().to_string(), &text)?;
+    let comparison = before.compare(now);
+    if context.format == Format::Json {
+        say_json(&serde_json::json!({"worse": comparison.worse, "better": comparison.better}))?;
+    } else {
+        let mut lines: Vec<String> = comparison.worse.iter().map(|line| format!("worse: {line}")).collect();
+        lines.extend(comparison.better.iter().map(|line| format!("better: {line}")));
+        lines.push(format!("{} rows, {} findings", now.rows.len(), comparison.worse.len()));
+        say(&lines.join("\n"))?;
+    }
+    if comparison.worse.is_empty() { Ok(()) } else { Err(Failure::Said) }
+}
+
+/// A line for each row with a fault, and where the page is.
+fn summary(report: &report::Report, options: &Options) -> String {
+    let mut lines = Vec::new();
+    let mut rows = 0;
+    for results in &report.experiments {
+        for row in &results.rows {
+            rows += 1;
+            let verdict = &row.verdict;
+            let faults = [
+                ("NaN", &verdict.nan),
+                ("infinite", &verdict.infinite),
+                ("negative", &verdict.negative),
+                ("discontinuous", &verdict.discontinuous),
+            ];
+            for (what, fault) in faults.into_iter().filter(|(_, fault)| fault.count > 0) {
+                let worst = fault.worst.as_ref().map_or(String::new(), |worst| {
+                    format!(", {} instead of {} at {}", worst.got, worst.expected, worst.input)
+                });
+                lines.push(format!("{}: {}: {what}: {}{worst}", results.name, row.label, fault.count));
+            }
+        }
+    }
+    for agreement in report.agreement.iter().filter(|a| a.outside > 0) {
+        lines.push(format!(
+            "{}: {} results outside of what WGSL allows",
+            agreement.module, agreement.outside
+        ));
+    }
+    lines.extend(report.without.iter().map(|(name, why)| format!("{name}: no row: {why}")));
+    if options.accept.is_none() {
+        lines.push(format!("{rows} rows: {}", options.output.join("report.html").display()));
+    } else {
+        lines.push(format!("{rows} rows"));
+    }
+    lines.join("\n")
+}
+
+/// Finished rows in a folder.
+struct Kept {
+    folder: Option<PathBuf>,
+}
+
+impl Done for Kept {
+    fn get(&self, key: &str) -> Option<String> {
+        std::fs::read_to_string(self.folder.as_ref()?.join(format!("{key}.json"))).ok()
+    }
+
+    fn put(&self, key: &str, row: &str) -> std::io::Result<()> {
+        let Some(folder) = &self.folder else { return Ok(()) };
+        std::fs::create_dir_all(folder)?;
+        // Renamed into place: what is there is whole.
+        let mut file = tempfile::NamedTempFile::new_in(folder)?;
+        std::io::Write::write_all(&mut file, row.as_bytes())?;
+        file.persist(folder.join(format!("{key}.json"))).map_err(|error| error.error)?;
+        Ok(())
+    }
+}
+
+/// RFC 3339, UTC, to the second.
+fn now() -> String {
+    humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string()
+}
