@@ -61,7 +61,13 @@ pub fn named_functions(interface: &Interface, used: &[Interface]) -> Result<(), 
         .map(|name| (name, &own, place.keys(&["combine", name]).key_span()));
     let offered = category.manifest.offers.iter().enumerate();
     let offered = offered.map(|(at, name)| (name, &any, place.keys(&["offers"]).then(Way::Index(at)).span()));
-    for (name, known, span) in combined.chain(offered) {
+    let optional = category.manifest.optional.iter().enumerate();
+    let optional = optional.flat_map(|(at, group)| group.iter().enumerate().map(move |(within, name)| (at, within, name)));
+    let optional = optional.map(|(at, within, name)| {
+        let place = place.keys(&["optional"]).then(Way::Index(at)).then(Way::Index(within));
+        (name, &own, place.span())
+    });
+    for (name, known, span) in combined.chain(offered).chain(optional) {
         if !known.contains(name) {
             return Err(Diagnostic::new(
                 codes::UNKNOWN_FUNCTION,

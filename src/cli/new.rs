@@ -118,7 +118,14 @@ fn code(context: &Context, category: &str) -> Result<String, Failure> {
     if functions.is_empty() {
         return Ok(ROOT.to_owned());
     }
-    let texts: Vec<String> = functions.into_values().collect();
+    // What may be left out is: the interface's own body is as good.
+    let manifest = context.catalog.category(category).map(|category| &category.manifest);
+    let needed = |name: &str| manifest.is_none_or(|manifest| manifest.optional_with(name).is_none());
+    let texts: Vec<String> = functions
+        .into_iter()
+        .filter(|(name, _)| needed(name))
+        .map(|(_, text)| text)
+        .collect();
     Ok(format!("{}\n", texts.join("\n\n")))
 }
 

@@ -26,12 +26,23 @@ pub struct CategoryManifest {
     /// Functions of `interface.wgsl` that go the other way: the module with the slot defines them, the module in the slot calls them.
     #[serde(default)]
     pub offers: Vec<String>,
+    /// Groups of functions that a module may leave out, a group as a whole: then the interface's own bodies run.
+    #[serde(default)]
+    pub optional: Vec<Vec<String>>,
     /// Values of struct members where `probe` is given none: struct, then member.
     #[serde(default)]
     pub defaults: IndexMap<String, IndexMap<String, Value>>,
     /// Module-scope resource variables of `interface.wgsl`.
     #[serde(default)]
     pub resources: IndexMap<String, Resource>,
+}
+
+impl CategoryManifest {
+    /// The group that a function may be left out with; none for one that every module defines.
+    pub fn optional_with(&self, function: &str) -> Option<&[String]> {
+        let mut groups = self.optional.iter();
+        groups.find(|group| group.iter().any(|name| name == function)).map(Vec::as_slice)
+    }
 }
 
 fn pass_group() -> u32 {

@@ -165,7 +165,7 @@ fn locations_in_structs(unit: &Unit, entry: &naga::EntryPoint) -> Result<(), Rep
     .into())
 }
 
-/// Every function of the interface is there, with the interface's signature.
+/// Every function of the interface is there, with the interface's signature; of an optional group all or none.
 pub fn against_interface(unit: &Unit, interface: &Interface, declared: &Unit) -> Result<(), Report> {
     let offers = &interface.category.manifest.offers;
     for item in interface
@@ -177,7 +177,9 @@ pub fn against_interface(unit: &Unit, interface: &Interface, declared: &Unit) ->
         let Some(&expected) = declared.functions.get(&item.name) else {
             continue;
         };
-        require(unit, interface, item, declared, expected, true)?;
+        let group = interface.category.manifest.optional_with(&item.name);
+        let must = group.is_none_or(|group| group.iter().any(|name| unit.functions.contains_key(name)));
+        require(unit, interface, item, declared, expected, must)?;
     }
     Ok(())
 }

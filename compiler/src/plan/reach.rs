@@ -372,12 +372,18 @@ impl Reach<'_> {
         match unit.functions.get(function) {
             Some(&handle) if unit.dependent[handle.index()] => Ok((home, Body::Function(handle))),
             Some(&handle) => Ok((self.homes[home].first, Body::Function(handle))),
+            None if self.may_leave_out(node, function) => self.neutral(&self.tree.nodes[node].module.category, function),
             None => Err(
                 Diagnostic::new(codes::MISSING_FUNCTION, format!("the module does not define `{function}`"))
                     .at(&unit.file, 0..0, "in this file")
                     .into(),
             ),
         }
+    }
+
+    fn may_leave_out(&self, node: usize, function: &str) -> bool {
+        let category = self.catalog.category(&self.tree.nodes[node].module.category);
+        category.is_some_and(|c| c.manifest.optional_with(function).is_some())
     }
 
     /// A function that the owner of the slot offers: its own, one of its slots', or one that it is offered itself.

@@ -6,13 +6,3 @@ fn distribution(s: Surface, h: vec3f) -> f32 {
     let k = a2 * c2 + (1.0 - c2);
     return select(0.0, a2 * INV_PI / (k * k), cosine > 0.0);
 }
-
-/// These are compared by their values: they draw nothing.
-fn facet_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
-    return s.normal;
-}
-
-/// Of what is not drawn.
-fn facet_pdf(s: Surface, v: vec3f, h: vec3f) -> f32 {
-    return 0.0;
-}
