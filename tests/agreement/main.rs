@@ -25,6 +25,19 @@ use shadewright::runtime::probe::Probe;
 /// Rows of each function.
 const ROWS: usize = 400;
 
+/// Functions of which WGSL leaves more open than [`MOST_OPEN`], how much at most, and why.
+const OPEN: &[(&str, f64, &str)] = &[
+    (
+        "brdf/lambert brdf_sample",
+        0.6,
+        "sine and cosine of angles up to 2 pi: the accuracy ends at pi",
+    ),
+    ("brdf/microfacet brdf_sample", 0.6, "the same"),
+    ("ndf/ggx facet_sample", 0.6, "the same"),
+];
+/// Largest share of numbers of a function of which nothing can be said.
+const MOST_OPEN: f64 = 0.3;
+
 /// A module with its slots' defaults; slots that need a module and have no default get the first that fits.
 fn alone(module: &Module, depth: usize) -> Node {
     let mut node = Node::new(format!("{}/{}", module.category, module.name));
@@ -128,8 +141,11 @@ fn every_function_is_within_what_wgsl_allows() {
                 found.results, found.equal, found.undecided, found.open, found.outside, found.ulps
             );
             functions += 1;
-            results += found.results;
-            open += found.undecided + found.open;
+            let known = OPEN.iter().find(|(open, ..)| *open == name);
+            if known.is_none() {
+                results += found.results;
+                open += found.undecided + found.open;
+            }
             if found.outside > 0 {
                 let _ = writeln!(
                     wrong,
@@ -139,7 +155,7 @@ fn every_function_is_within_what_wgsl_allows() {
                 );
             }
             let share = (found.undecided + found.open) as f64 / found.results as f64;
-            if share > 0.3 {
+            if share > known.map_or(MOST_OPEN, |(_, most, _)| *most) {
                 let _ = writeln!(wrong, "{name}: {:.0} % undecided", share * 100.0);
             }
         }

@@ -64,6 +64,11 @@ fn number(name: &str, random: &mut Random, hard: bool) -> f64 {
             true => random.of(&[1e-4, 1e-3, 0.002_025, 1.0, 0.5]),
             false => random.log(1e-3, 1.0),
         },
+        // A uniform number.
+        "u" => match hard {
+            true => random.of(&[0.0, 0.5, 0.25, 0.999_999_94, 1e-7]),
+            false => random.unit(),
+        },
         "opacity" => random.unit(),
         "cosine" => match hard {
             true => random.of(&[0.0, 1.0, -1.0, 1.0 + 1e-7, 1e-20, 0.999_999_9]),

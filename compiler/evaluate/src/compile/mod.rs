@@ -1,5 +1,6 @@
 //! From a validated module to a program: global variables get their places, functions their code, callees first.
 
+mod call;
 mod expression;
 mod function;
 mod image;
