@@ -12,15 +12,15 @@ fn distribution(s: Surface, h: vec3f) -> f32 {
 
 /// A facet as v sees it: where a sphere's cap is lit from the stretched v, and unstretched again. Dupuy and Benyoub 2023, listing 3.
 fn facet_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
-    let frame = frame_of(s.normal);
-    let local = v * frame;
+    let basis = frame_of(s.normal);
+    let local = v * basis;
     let stretched = normalize(vec3f(s.alpha * local.xy, local.z));
     let turn = 2.0 * PI * u.x;
     let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
     let radius = sqrt(max(1.0 - z * z, 0.0));
     let cap = vec3f(radius * cos(turn), radius * sin(turn), z) + stretched;
     // Opposite to v the sum vanishes; it has no weight there.
-    return frame * unit_or(vec3f(s.alpha * cap.xy, max(cap.z, 0.0)), vec3f(0.0, 0.0, 1.0));
+    return basis * unit_or(vec3f(s.alpha * cap.xy, max(cap.z, 0.0)), vec3f(0.0, 0.0, 1.0));
 }
 
 /// G1(v) v.h D(h) / n.v, 1/sr (Heitz 2014, eq. 16), with Smith's G1 = 2 n.v / (n.v + sqrt(alpha^2 + (1 - alpha^2) (n.v)^2)): n.v cancels.

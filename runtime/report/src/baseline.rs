@@ -139,7 +139,7 @@ impl Line {
             model: row.model.as_ref().map(sizes),
             rounding: sizes(&row.rounding_cpu),
             faults: [&verdict.nan, &verdict.infinite, &verdict.negative, &verdict.discontinuous].map(|fault| fault.count),
-            cost: row.cost.clone(),
+            cost: row.cost,
             executed: row.executed.mean,
         }
     }

@@ -56,19 +56,14 @@ fn default_seed() -> u64 {
 }
 
 /// What an experiment compares.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Alternatives {
     /// Every module of the category (in a category's folder), or the module (in its own).
+    #[default]
     All,
     /// These recipes, by label.
     Of(IndexMap<String, Node>),
-}
-
-impl Default for Alternatives {
-    fn default() -> Self {
-        Self::All
-    }
 }
 
 /// Whether parameters vary.

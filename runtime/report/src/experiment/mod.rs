@@ -126,7 +126,7 @@ fn alternatives(catalog: &Catalog, category: &str, folder: &str, declared: &Decl
             let fits = catalog.modules().filter(|module| module.category == category);
             let own = folder.split_once('/').map(|(_, name)| name);
             fits.filter(|module| own.is_none_or(|own| own == module.name))
-                .map(|module| (module.name.clone(), Node::new(&format!("{category}/{}", module.name))))
+                .map(|module| (module.name.clone(), Node::new(format!("{category}/{}", module.name))))
                 .collect()
         }
     };

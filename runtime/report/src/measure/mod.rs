@@ -78,17 +78,17 @@ impl Of {
     }
 
     /// What is, and what should be, on the CPU.
-    fn values(self, subject: &Subject, rows: &[Json]) -> Result<(Vec<Vec<f64>>, Vec<Vec<f64>>), MeasureError> {
+    fn values(self, subject: &Subject, rows: &[Json]) -> Result<[Vec<Vec<f64>>; 2], MeasureError> {
         let table = subject.table(rows)?;
         let precise = subject.probe.on_cpu::<f64>(&table)?.values;
         match self {
             Self::Model => {
                 let truth = subject.truth(rows)?.unwrap_or_else(|| precise.clone());
-                Ok((precise, truth))
+                Ok([precise, truth])
             }
             Self::Rounding => {
                 let single = subject.probe.on_cpu::<f32>(&table)?.values;
-                Ok((single.into_iter().map(widened).collect(), precise))
+                Ok([single.into_iter().map(widened).collect(), precise])
             }
         }
     }

@@ -185,7 +185,7 @@ pub(crate) fn measure(subject: &Subject, device: Option<OnDevice>, effort: &Effo
         let found = search(&start, effort.search, &mut random, |points| {
             check()?;
             let rows: Vec<Json> = points.iter().map(|p| subject.domain.row(p)).collect();
-            let (got, wanted) = of.values(subject, &rows)?;
+            let [got, wanted] = of.values(subject, &rows)?;
             Ok(got
                 .iter()
                 .zip(&wanted)
@@ -296,7 +296,7 @@ impl Searched<'_, '_> {
     ) -> Result<(), MeasureError> {
         let subject = self.subject;
         let row = [subject.domain.row(point)];
-        let (got, wanted) = self.of.values(subject, &row)?;
+        let [got, wanted] = self.of.values(subject, &row)?;
         let worst = worst_of(subject, &row[0], &got[0], &wanted[0]);
         for errors in errors {
             if size.is_finite() && size > errors.searched {

@@ -69,7 +69,7 @@ fn with(point: &[f64], changes: &[(usize, f64)]) -> Vec<f64> {
 /// Errors at points; none where the module's value is not finite.
 pub(crate) fn errors(subject: &Subject, points: &[Vec<f64>], of: Of) -> Result<Vec<Option<f64>>, MeasureError> {
     let rows: Vec<Json> = points.iter().map(|p| subject.domain.row(p)).collect();
-    let (got, truth) = of.values(subject, &rows)?;
+    let [got, truth] = of.values(subject, &rows)?;
     let size = |(got, truth): (&Vec<f64>, &Vec<f64>)| {
         let (size, _) = largest(subject.metric(), got, truth);
         size.is_finite().then_some(size)
