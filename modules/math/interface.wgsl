@@ -24,7 +24,8 @@ fn frame_of(n: vec3f) -> mat3x3f {
 /// A direction around the unit vector n with the density cos / pi, for u uniform in [0, 1)^2. Malley's method (Shirley and Wang 1992).
 fn cosine_sample(n: vec3f, u: vec2f) -> vec3f {
     let radius = sqrt(u.x);
-    let turn = 2.0 * PI * u.y;
+    // Of angles beyond pi WGSL promises no sine.
+    let turn = PI * (2.0 * u.y - 1.0);
     return frame_of(n) * vec3f(radius * cos(turn), radius * sin(turn), sqrt(max(1.0 - u.x, 0.0)));
 }
 

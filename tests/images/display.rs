@@ -49,7 +49,14 @@ const MODULES: [(&str, &str); 4] = [
         "material/bits/bits.wgsl",
         r"
         fn surface(at: Fragment) -> Surface {
-            return Surface(at.position, at.normal, at.normal, vec3f(0.0), vec3f(0.0), 1.0, vec3f(bitcast<f32>(params.bits)), 1.0);
+            var s: Surface;
+            s.position = at.position;
+            s.normal = at.normal;
+            s.geometric_normal = at.normal;
+            s.alpha = 1.0;
+            s.emission = vec3f(bitcast<f32>(params.bits));
+            s.opacity = 1.0;
+            return s;
         }
         ",
     ),

@@ -15,7 +15,8 @@ fn facet_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
     let basis = frame_of(s.normal);
     let local = v * basis;
     let stretched = normalize(vec3f(s.alpha * local.xy, local.z));
-    let turn = 2.0 * PI * u.x;
+    // Of angles beyond pi WGSL promises no sine.
+    let turn = PI * (2.0 * u.x - 1.0);
     let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
     let radius = sqrt(max(1.0 - z * z, 0.0));
     let cap = vec3f(radius * cos(turn), radius * sin(turn), z) + stretched;

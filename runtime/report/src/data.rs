@@ -40,7 +40,7 @@ pub struct Provenance {
     pub is_software: bool,
     /// Version of this program.
     pub version: String,
-    /// Commit of the sources, where the program knows it; with `+` where they had been edited.
+    /// Commit of the sources that the program was built from, where it knows it; with `+` where they had been edited then.
     pub commit: String,
     /// When it was made, RFC 3339, UTC; empty where a report must be reproducible.
     pub date: String,
@@ -248,7 +248,7 @@ pub struct Agreement {
     pub equal: usize,
     /// Outside what WGSL's accuracy table allows.
     pub outside: usize,
-    /// Undecided: a branch hangs on a rounding, so anything goes.
+    /// Undecided: a branch hangs on a rounding, or WGSL bounds no result, so anything goes.
     pub undecided: usize,
     /// Largest difference in units in the last place, among those inside.
     #[serde(deserialize_with = "or_nan")]

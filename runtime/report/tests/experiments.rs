@@ -11,7 +11,12 @@ fn catalog() -> Catalog {
 
 /// The errors of an experiment on distributions with these fields beside a title.
 fn error(fields: &str) -> String {
-    let text = format!("[\n    (\n        title: \"tested\",\n        {fields}\n    ),\n]\n");
+    let function = if fields.contains("function:") {
+        ""
+    } else {
+        ", function: \"distribution\""
+    };
+    let text = format!("[\n    (\n        title: \"tested\"{function},\n        {fields}\n    ),\n]\n");
     match experiment::read(&catalog(), "ndf", "ndf", "ndf/ndf.experiment.ron", &text) {
         Ok(_) => panic!("{text} is taken"),
         Err(report) => report.render(),
@@ -50,7 +55,7 @@ error[SW1101]: `ndf` has no function `distributoin`
   |                   ^^^^^^^^^^^^^^ no such function
   |
   = did you mean `distribution`?
-  = functions: distribution
+  = functions: distribution, facet_sample, facet_pdf
 "#,
     );
     assert_text(

@@ -27,7 +27,7 @@ pub(crate) fn agree(subject: &Subject, rows: &[Json], got: &[Vec<f64>], bounds: 
                 agreement.equal += 1;
                 continue;
             }
-            if *undecided {
+            if *undecided || !allowed.is_bounded() {
                 agreement.undecided += 1;
                 continue;
             }
