@@ -1,23 +1,24 @@
 /// (m + 2) / (2 pi) cos^m, 1/sr, of the angle between n and h, with m = 2 / alpha^2 - 2.
 ///
-/// The power is taken by the logarithm of cos^2 = 1 - sin^2: m is 2e8 at alpha 1e-4, and a 32-bit cosine cannot be told from 1 there.
+/// The power is taken by the logarithm of cos^2 = 1 - sin^2: m is 2e8 at alpha 1e-4, where a 32-bit cosine cannot
+/// be told from 1 and a length that is wrong by 1e-8 would count like an angle.
 fn distribution(s: Surface, h: vec3f) -> f32 {
     let cosine = dot(s.normal, h);
     let across = cross(s.normal, h);
     // The smallest alpha that is told from 0: its square is still a normal f32.
     let alpha = max(s.alpha, 1e-12);
     let half_m = (1.0 - alpha) * (1.0 + alpha) / (alpha * alpha);
-    let d = exp(half_m * log_cosine2(cosine, dot(across, across))) / alpha / alpha * INV_PI;
+    let d = exp(half_m * log_cosine2(cosine * cosine, dot(across, across))) / alpha / alpha * INV_PI;
     return select(0.0, d, cosine > 0.0);
 }
 
-/// ln(cos^2) from the cosine and sin^2. Below a sine of sqrt(1/2) by the series of 2 artanh(sin^2 / (2 - sin^2)), whose first missing
-/// term is below 2e-8 of the sum; the floor keeps a cosine of 0 from log(0).
-fn log_cosine2(cosine: f32, sine2: f32) -> f32 {
-    if sine2 > 0.5 {
-        return 2.0 * log(max(cosine, 1e-18));
+/// ln(cos^2) of a direction of any length from the squares of its parts along n and across. Up to 45 degrees by the series of
+/// 2 artanh(sin^2 / (2 - sin^2)), whose first missing term is below 2e-8 of the sum; the floor keeps a cosine of 0 from log(0).
+fn log_cosine2(along2: f32, across2: f32) -> f32 {
+    if across2 > along2 {
+        return log(max(along2 / (along2 + across2), 1e-37));
     }
-    let z = sine2 / (2.0 - sine2);
+    let z = across2 / (2.0 * along2 + across2);
     let z2 = z * z;
     let tail = 1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 * (1.0 / 11.0 + z2 / 13.0));
     return -2.0 * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (1.0 / 5.0 + z2 * tail)));
