@@ -1,0 +1,21 @@
+//! The diffuse part of Ashikhmin and Shirley's model.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use crate::oracles::reflection::angle;
+use crate::oracles::{At, Truth};
+
+pub(super) const TRUTHS: &[(&str, Truth)] = &[("diffuse", diffuse)];
+
+/// Ashikhmin and Shirley 2000, eq. 5.
+fn diffuse(at: &At) -> Vec<f64> {
+    let (n, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
+    let (theta_v, theta_l) = (angle(n, v), angle(n, l));
+    if theta_v >= FRAC_PI_2 || theta_l >= FRAC_PI_2 {
+        return vec![0.0; 3];
+    }
+    let (albedo, f0) = (at.vector("s.diffuse"), at.vector("s.f0"));
+    let passed = |theta: f64| 1.0 - (1.0 - theta.cos() / 2.0).powi(5);
+    let channel = |i: usize| 28.0 * albedo[i] / (23.0 * PI) * (1.0 - f0[i]) * passed(theta_v) * passed(theta_l);
+    (0..3).map(channel).collect()
+}

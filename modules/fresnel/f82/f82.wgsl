@@ -1,0 +1,17 @@
+/// 7^7 / 6^6, one over the largest value of c (1 - c)^6, which it has at c = 1/7: 81.8 degrees.
+const PEAK: f32 = 17.6513846022;
+/// (6/7)^5: Schlick's power there.
+const POWER: f32 = 0.462664366038;
+
+/// Schlick's term less a bump that takes it to `tint` times itself at 82 degrees.
+///
+/// Not below 0: where f0 is below 0.1 and the tint darker still, the bump is wider than what it is taken from.
+fn fresnel(s: Surface, cosine: f32) -> vec3f {
+    let c = clamp(cosine, 0.0, 1.0);
+    let x = 1.0 - c;
+    let x2 = x * x;
+    let x5 = x2 * x2 * x;
+    let schlick = s.f0 + (1.0 - s.f0) * x5;
+    let at_peak = s.f0 + (1.0 - s.f0) * POWER;
+    return max(schlick - (c * x5 * x * PEAK) * at_peak * (1.0 - params.tint), vec3f(0.0));
+}
