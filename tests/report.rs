@@ -192,6 +192,17 @@ fn nothing_is_worse_than_the_baseline() {
     let comparison = accepted.compare(&now);
     println!("{} rows; better: {:#?}", now.rows.len(), comparison.better);
     assert!(comparison.worse.is_empty(), "{:#?}", comparison.worse);
+    // The page for people is of the same rows.
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("spec/errors.md")).unwrap();
+    for name in now.rows.keys() {
+        let (experiment, label) = name.split_once(": ").unwrap();
+        let section = page
+            .split(&format!("\n## {experiment}\n"))
+            .nth(1)
+            .unwrap_or_else(|| panic!("spec/errors.md has no {experiment}"));
+        let section = section.split("\n## ").next().unwrap();
+        assert!(section.contains(&format!("\n| {label} |")), "spec/errors.md has no {name}");
+    }
 }
 
 /// Rows kept in memory.

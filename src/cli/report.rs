@@ -14,6 +14,14 @@ use super::{Context, Format};
 /// Folder in the report's for what is done, so that an interrupted report goes on where it stopped.
 const DONE: &str = ".done";
 
+/// Head of the table in Markdown.
+const HEAD: &str = "# What the modules cost, and what they get wrong
+
+Equal on every machine: errors of the evaluator, operations counted in the linked functions. [report.md](report.md) says what the columns mean.
+`shadewright report --accept spec/baseline.json --markdown spec/errors.md` makes this page and the baseline that a test compares with.
+
+";
+
 /// Options of `report`.
 #[derive(Args)]
 pub struct Options {
@@ -85,7 +93,7 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
         }
     }
     if let Some(path) = &options.markdown {
-        outputs.stage(path, report::write::markdown(&report).as_bytes())?;
+        outputs.stage(path, format!("{HEAD}{}", report::write::markdown(&report)).as_bytes())?;
     }
     outputs.commit()?;
     match context.format {

@@ -235,7 +235,10 @@ fn logarithmic(lo: f64, hi: f64, u: f64) -> f64 {
 
 /// The unit vector with this cosine to +z, turned around it by a share of the circle.
 fn around(cosine: f64, turn: f64) -> Json {
-    polar(cosine.clamp(-1.0, 1.0).acos(), turn * std::f64::consts::TAU)
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let (sin_p, cos_p) = (turn * std::f64::consts::TAU).sin_cos();
+    // The cosine as it is: 0 is in the horizon.
+    vector(DVec3::new(sine * cos_p, sine * sin_p, cosine))
 }
 
 fn polar(theta: f64, phi: f64) -> Json {
