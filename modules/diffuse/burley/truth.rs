@@ -1,6 +1,6 @@
 //! Burley's diffuse model.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use crate::oracles::reflection::angle;
 use crate::oracles::{At, Truth};
@@ -11,7 +11,7 @@ pub(super) const TRUTHS: &[(&str, Truth)] = &[("diffuse", diffuse)];
 fn diffuse(at: &At) -> Vec<f64> {
     let (n, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
     let (theta_v, theta_l, theta_d) = (angle(n, v), angle(n, l), angle(v, l) / 2.0);
-    if theta_v >= FRAC_PI_2 || theta_l >= FRAC_PI_2 {
+    if n.dot(v) <= 0.0 || n.dot(l) <= 0.0 {
         return vec![0.0; 3];
     }
     let fd90 = 0.5 + 2.0 * theta_d.cos().powi(2) * at.number("s.alpha").sqrt();

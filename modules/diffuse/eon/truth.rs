@@ -1,6 +1,6 @@
 //! Energy-preserving Oren-Nayar reflection.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use crate::oracles::reflection::angle;
 use crate::oracles::{At, Truth};
@@ -19,7 +19,7 @@ fn albedo_once(r: f64, theta: f64) -> f64 {
 fn diffuse(at: &At) -> Vec<f64> {
     let (n, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
     let (theta_v, theta_l) = (angle(n, v), angle(n, l));
-    if theta_v >= FRAC_PI_2 || theta_l >= FRAC_PI_2 {
+    if n.dot(v) <= 0.0 || n.dot(l) <= 0.0 {
         return vec![0.0; 3];
     }
     let r = at.number("s.alpha").sqrt();

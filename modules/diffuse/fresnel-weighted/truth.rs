@@ -1,6 +1,6 @@
 //! The diffuse part of Ashikhmin and Shirley's model.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use crate::oracles::reflection::angle;
 use crate::oracles::{At, Truth};
@@ -11,7 +11,7 @@ pub(super) const TRUTHS: &[(&str, Truth)] = &[("diffuse", diffuse)];
 fn diffuse(at: &At) -> Vec<f64> {
     let (n, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
     let (theta_v, theta_l) = (angle(n, v), angle(n, l));
-    if theta_v >= FRAC_PI_2 || theta_l >= FRAC_PI_2 {
+    if n.dot(v) <= 0.0 || n.dot(l) <= 0.0 {
         return vec![0.0; 3];
     }
     let (albedo, f0) = (at.vector("s.diffuse"), at.vector("s.f0"));

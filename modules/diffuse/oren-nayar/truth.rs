@@ -11,7 +11,7 @@ pub(super) const TRUTHS: &[(&str, Truth)] = &[("diffuse", diffuse)];
 fn diffuse(at: &At) -> Vec<f64> {
     let (n, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
     let (theta_v, theta_l) = (angle(n, v), angle(n, l));
-    if theta_v >= FRAC_PI_2 || theta_l >= FRAC_PI_2 {
+    if n.dot(v) <= 0.0 || n.dot(l) <= 0.0 {
         return vec![0.0; 3];
     }
     let (larger, smaller) = (theta_v.max(theta_l), theta_v.min(theta_l));

@@ -6,8 +6,8 @@ fn fresnel(s: Surface, cosine: f32) -> vec3f {
     let c = clamp(cosine, 0.0, 1.0);
     let f0 = clamp(s.f0, vec3f(0.0), vec3f(1.0));
     let q = sqrt(f0);
-    // 1 - q without the rounding of the root. The floor keeps f0 = 1 from 0 / 0 at the horizon; it is an index of 2e12.
-    let w = max((1.0 - f0) / (1.0 + q), vec3f(1e-12));
+    // 1 - q without the rounding of the root. The floor keeps f0 = 1 from 0 / 0 at the horizon; it is an index of 2e18.
+    let w = max((1.0 - f0) / (1.0 + q), vec3f(1e-18));
     let g = sqrt(4.0 * q + (c * w) * (c * w));
     // 0 only where f0 and c are both 0: nothing is there that reflects.
     let sum = max(g + c * w, vec3f(1e-18));

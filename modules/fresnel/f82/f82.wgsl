@@ -5,7 +5,7 @@ const POWER: f32 = 0.462664366038;
 
 /// Schlick's term less a bump that takes it to `tint` times itself at 82 degrees.
 ///
-/// Not below 0: where f0 is below 0.1 and the tint darker still, the bump is wider than what it is taken from.
+/// Not below 0: where f0 is low and the tint dark, the bump is wider than what it is taken from.
 fn fresnel(s: Surface, cosine: f32) -> vec3f {
     let c = clamp(cosine, 0.0, 1.0);
     let x = 1.0 - c;
