@@ -15,5 +15,7 @@ fn brdf(at: &At) -> Vec<f64> {
     }
     let n = 2.0 / at.number("s.alpha").powi(2) - 2.0;
     let factor = (n + 2.0) * (n + 4.0) / (8.0 * PI * ((-n / 2.0).exp2() + n));
-    (at.vector("s.diffuse") / PI + at.vector("s.f0") * (factor * angle(normal, v + l).cos().powf(n))).to_array().to_vec()
+    (at.vector("s.diffuse") / PI + at.vector("s.f0") * (factor * angle(normal, v + l).cos().powf(n)))
+        .to_array()
+        .to_vec()
 }

@@ -16,7 +16,9 @@ fn brdf(at: &At) -> Vec<f64> {
         return vec![0.0; 3];
     }
     let n = 2.0 / at.number("s.alpha").powi(2) - 2.0;
-    (at.vector("s.diffuse") / PI + at.vector("s.f0") * ((n + 2.0) / (2.0 * PI) * lobe(normal, v, l, n))).to_array().to_vec()
+    (at.vector("s.diffuse") / PI + at.vector("s.f0") * ((n + 2.0) / (2.0 * PI) * lobe(normal, v, l, n)))
+        .to_array()
+        .to_vec()
 }
 
 /// The n-th power of the cosine of the angle between the eye and the mirror direction; nothing behind the lobe.
