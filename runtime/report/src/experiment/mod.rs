@@ -131,7 +131,12 @@ fn alternatives(catalog: &Catalog, category: &str, folder: &str, declared: &Decl
         }
     };
     let mut found = Vec::new();
-    for (label, node) in nodes {
+    for (label, mut node) in nodes {
+        // As in a slot: modules of other categories may have the same name.
+        let qualified = format!("{category}/{}", node.module);
+        if catalog.module(&qualified).is_ok() {
+            node.module = qualified;
+        }
         let recipe = Recipe::from(node);
         match catalog.module(&recipe.root.module) {
             Ok(root) if root.category == category => {
