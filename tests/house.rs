@@ -221,6 +221,7 @@ const HOMONYMS: &[(&str, &str, &str)] = &[
     ("compiler/src", "depth", "a kind of texture"),
     ("compiler/src", "visibility", "a field of wgpu's layouts"),
     ("compiler/src", "static", "a word of Rust"),
+    ("compiler/src", "constant", "a kind of item"),
     ("runtime/src", "depth", "a kind of texture"),
     ("runtime/src", "display", "the scene's field, and the frame's image"),
     ("runtime/src", "forward", "a member of the interface's struct for views"),

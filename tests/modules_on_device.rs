@@ -275,52 +275,6 @@ fn microfacet_white_furnace() {
     }
 }
 
-/// What the manifests of BRDFs and diffuse modules claim, checked on the device.
-#[test]
-fn claimed_properties_hold() {
-    for (path, _) in Embedded.files() {
-        let [category @ ("brdf" | "diffuse"), module, "module.ron"] = path.split('/').collect::<Vec<_>>()[..] else {
-            continue;
-        };
-        let name = format!("{category}/{module}");
-        let claims = &common::catalog().module(&name).unwrap().manifest.properties;
-        let surface = json!({"alpha": 0.1, "f0": [0.04, 0.5, 1.0], "diffuse": [1.0, 0.5, 0.0]});
-        let ask = |list: Vec<Json>| probe(&format!("{name:?}"), category, Json::Array(list));
-        let values = |pairs: &[(DVec3, DVec3)]| {
-            let rows = pairs
-                .iter()
-                .map(|(v, l)| json!({"s": surface, "v": list(*v), "l": list(*l)}))
-                .collect();
-            let results = ask(rows);
-            results.as_array().unwrap().iter().map(|r| components(r, &name)).collect::<Vec<_>>()
-        };
-        let same = |a: &[Vec<f64>], b: &[Vec<f64>], what: &str| {
-            for (x, y) in a.iter().flatten().zip(b.iter().flatten()) {
-                assert!((x - y).abs() <= 2e-5 * x.abs() + 1e-9, "{name} is not {what}: {x} {y}");
-            }
-        };
-        let all = pairs();
-        if claims.iter().any(|c| c == "reciprocal") {
-            let swapped: Vec<_> = all.iter().map(|(v, l)| (*l, *v)).collect();
-            same(&values(&all), &values(&swapped), "reciprocal");
-        }
-        if claims.iter().any(|c| c == "isotropic") {
-            // A quarter turn exchanges components and rounds nothing.
-            let quarter = |d: DVec3| DVec3::new(-d.y, d.x, d.z);
-            let turned: Vec<_> = all.iter().map(|(v, l)| (quarter(*v), quarter(*l))).collect();
-            same(&values(&all), &values(&turned), "isotropic");
-        }
-        if claims.iter().any(|c| c == "energy_conserving") {
-            let sky = hemisphere(16, 16);
-            for angle in ANGLES {
-                let pairs: Vec<_> = sky.iter().map(|(l, _)| (deg(angle, 0.0), *l)).collect();
-                let albedo: f64 = values(&pairs).iter().zip(&sky).map(|(f, (l, w))| f[0] * l.z * w).sum();
-                assert!(albedo <= 1.0 + 1e-5, "{name} reflects {albedo} at {angle} degrees");
-            }
-        }
-    }
-}
-
 /// Catches a wrong window, inverse square or cosine, a NaN at zero distance, light from below the horizon.
 #[test]
 fn point() {
