@@ -69,17 +69,13 @@ impl Subject<'_> {
         self.values(self.function, &rows)
     }
 
-    /// Albedo toward an eye, and its standard error, by what the module draws, or by the cosine.
-    fn albedo(&self, alpha: f64, degrees: f64) -> (f64, f64) {
+    /// Albedo toward an eye of a white surface, whose white is shared between facets and what is below them, and its standard error; by what
+    /// the module draws, or by the cosine.
+    fn albedo(&self, f0: f64, alpha: f64, degrees: f64) -> (f64, f64) {
         let eye = direction(degrees.to_radians(), 0.3);
-        let white = json!({"alpha": alpha, "widths": [alpha, alpha], "f0": [1.0, 1.0, 1.0], "diffuse": [0.0, 0.0, 0.0]});
-        // A diffuse part has its own colour, and no sampler.
+        let s = json!({"alpha": alpha, "widths": [alpha, alpha], "f0": [f0, f0, f0], "diffuse": [1.0 - f0, 1.0 - f0, 1.0 - f0]});
+        // A diffuse part has no sampler.
         let is_whole = self.function == "brdf";
-        let s = if is_whole {
-            white
-        } else {
-            json!({"alpha": alpha, "diffuse": [1.0, 1.0, 1.0], "f0": [0.0, 0.0, 0.0]})
-        };
         let numbers = |step: usize| [fraction(step, 0.754_877_666), fraction(step, 0.569_840_291)];
         let drawn: Vec<Vec<f64>> = if is_whole {
             let rows: Vec<Json> = (0..DRAWN)
@@ -142,13 +138,13 @@ impl Subject<'_> {
         }
         if claimed("energy_conserving") {
             let mut most = 0.0_f64;
-            for alpha in [0.05, 0.3, 1.0] {
+            for (f0, alpha) in [0.0, 0.5, 1.0].into_iter().flat_map(|f0| [0.05, 0.3, 1.0].map(|alpha| (f0, alpha))) {
                 for degrees in [0.0, 30.0, 60.0, 80.0, 89.0] {
-                    let (albedo, error) = self.albedo(alpha, degrees);
+                    let (albedo, error) = self.albedo(f0, alpha, degrees);
                     most = most.max(albedo);
                     if albedo > 1.001 + 4.0 * error {
                         broken.push(format!(
-                            "{} reflects {albedo} +- {error} at alpha {alpha}, {degrees} degrees",
+                            "{} reflects {albedo} +- {error} at f0 {f0}, alpha {alpha}, {degrees} degrees",
                             self.name
                         ));
                     }
