@@ -1,6 +1,6 @@
 //! The distribution itself, normalised: the shader computes it in another form.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use crate::oracles::reflection::angle;
 use crate::oracles::{At, Truth};
@@ -10,10 +10,11 @@ pub(super) const TRUTHS: &[(&str, Truth)] = &[("distribution", distribution)];
 /// Löw et al. 2012, with A such that the integral of D n.h is 1.
 fn distribution(at: &At) -> Vec<f64> {
     let (alpha, c) = (at.number("s.alpha"), at.param("c"));
-    let theta = angle(at.vector("s.normal"), at.vector("h"));
-    if theta >= FRAC_PI_2 {
+    let (n, h) = (at.vector("s.normal"), at.vector("h"));
+    if n.dot(h) <= 0.0 {
         return vec![0.0];
     }
+    let theta = angle(n, h);
     let b = 2.0 / (alpha * alpha);
     // With w = 1 + b (1 - cos): 1 / A = 2 pi / b^2 times the integral of (1 + b - w) w^-c over w from 1 to 1 + b.
     let integral = (1.0 + b) * power_integral(-c, 1.0 + b) - power_integral(1.0 - c, 1.0 + b);

@@ -1,6 +1,6 @@
 //! The distribution itself: the shader computes it in another form.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use crate::oracles::reflection::angle;
 use crate::oracles::{At, Truth};
@@ -9,10 +9,11 @@ pub(super) const TRUTHS: &[(&str, Truth)] = &[("distribution", distribution)];
 
 /// Density of slopes of the root mean square alpha, over cos^4.
 fn distribution(at: &At) -> Vec<f64> {
-    let (alpha, theta) = (at.number("s.alpha"), angle(at.vector("s.normal"), at.vector("h")));
-    if theta >= FRAC_PI_2 {
+    let (n, h) = (at.vector("s.normal"), at.vector("h"));
+    if n.dot(h) <= 0.0 {
         return vec![0.0];
     }
+    let (alpha, theta) = (at.number("s.alpha"), angle(n, h));
     let slopes = 3.0 / (PI * alpha * alpha) * (-6f64.sqrt() * theta.tan() / alpha).exp();
     vec![slopes / theta.cos().powi(4)]
 }

@@ -1,6 +1,6 @@
 //! The distribution itself: the shader computes it in another form.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use crate::oracles::reflection::angle;
 use crate::oracles::{At, Truth};
@@ -10,10 +10,11 @@ pub(super) const TRUTHS: &[(&str, Truth)] = &[("distribution", distribution)];
 /// Burley 2012, appendix B.2: c / (alpha^2 cos^2 + sin^2)^gamma and its three cases of c.
 fn distribution(at: &At) -> Vec<f64> {
     let (alpha, gamma) = (at.number("s.alpha"), at.param("gamma"));
-    let theta = angle(at.vector("s.normal"), at.vector("h"));
-    if theta >= FRAC_PI_2 {
+    let (n, h) = (at.vector("s.normal"), at.vector("h"));
+    if n.dot(h) <= 0.0 {
         return vec![0.0];
     }
+    let theta = angle(n, h);
     let a2 = alpha * alpha;
     let (ln_a2, gap) = (a2.ln(), (1.0 - alpha) * (1.0 + alpha));
     // 1 / (pi c): the mean of q^-gamma for q from alpha^2 to 1.
