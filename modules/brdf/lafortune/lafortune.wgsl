@@ -5,7 +5,7 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
         return vec3f(0.0);
     }
     let n = exponent(s);
-    return s.diffuse * INV_PI + s.f0 * ((n + 2.0) * 0.5 * INV_PI * cosine_power(from_lobe(s, v, l), n));
+    return s.diffuse * INV_PI + s.f0 * ((n + 2.0) * 0.5 * INV_PI * cosine_power(dot(coefficients() * local_of(s, l), local_of(s, v)), from_lobe(s, v, l), n));
 }
 
 /// 1 - (Cx lx vx + Cy ly vy + Cz lz vz) for unit vectors and C in [-1, 1], as a sum of positive terms:
@@ -40,18 +40,18 @@ fn exponent(s: Surface) -> f32 {
     return max(2.0 * (1.0 - alpha) * (1.0 + alpha) / (alpha * alpha), 0.0);
 }
 
-/// (1 - x)^n; 0 for x > 1, behind the lobe.
+/// The n-th power of a cosine of which also the difference to 1 is known, x; 0 where it is not above 0, n = 0 included.
 ///
-/// With exponents of 1e8 an error of 6e-8 in 1 - x would be all, so the logarithm is taken of x itself: -ln(1 - x) = 2 artanh(x / (2 - x)),
-/// whose four terms leave 2e-8 for x below 1/4. The floor of the logarithm is that of a cosine of 0; below it a power of n > 1 is 0 anyway.
-fn cosine_power(x: f32, n: f32) -> f32 {
-    if x > 1.0 {
+/// With exponents of 1e8 an error of 6e-8 in the cosine would be all, so near 1 the logarithm is taken of x itself: -ln(1 - x) =
+/// 2 artanh(x / (2 - x)), whose four terms leave 2e-8 for x below 1/4. The floor keeps the logarithm normal.
+fn cosine_power(cosine: f32, x: f32, n: f32) -> f32 {
+    if cosine <= 0.0 {
         return 0.0;
     }
     let z = x / (2.0 - x);
     let z2 = z * z;
     let near = 2.0 * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (0.2 + z2 / 7.0)));
-    return exp(-n * select(-log(max(1.0 - x, 1e-30)), near, x < 0.25));
+    return exp(-n * select(-log(max(cosine, 1e-30)), near, x < 0.25));
 }
 
 /// Share of the samples that the lobe draws, the others the diffuse part: by their colours. The floor keeps black from 0 / 0.
@@ -84,7 +84,8 @@ fn lobe_sample(axis: vec3f, n: f32, u: vec2f) -> vec3f {
 /// (n + 1) / (2 pi) cos^n of the angle between C v and l, from the chord between them, and the cosine's density, each by its share, 1/sr.
 fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
     let n = exponent(s);
-    let chord = axis_of(s, v) - l;
-    let lobe = (n + 1.0) * 0.5 * INV_PI * cosine_power(0.5 * dot(chord, chord), n);
+    let axis = axis_of(s, v);
+    let chord = axis - l;
+    let lobe = (n + 1.0) * 0.5 * INV_PI * cosine_power(dot(axis, l), 0.5 * dot(chord, chord), n);
     return mix(cosine_pdf(s.normal, l), lobe, lobe_share(s));
 }

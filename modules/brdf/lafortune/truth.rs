@@ -19,7 +19,7 @@ fn brdf(at: &At) -> Vec<f64> {
     let local = |d: DVec3| DVec3::new(d.dot(tangent), d.dot(normal.cross(tangent)), d.dot(normal)) / d.length();
     let c = DVec3::new(at.param("cx"), at.param("cy"), at.param("cz"));
     let cosine = (c * local(v)).dot(local(l));
-    let lobe = if cosine < 0.0 {
+    let lobe = if cosine <= 0.0 {
         0.0
     } else {
         (n + 2.0) / (2.0 * PI) * cosine.powf(n)
