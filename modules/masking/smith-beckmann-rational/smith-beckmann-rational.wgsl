@@ -1,7 +1,8 @@
-/// G2 / (4 n.l n.v) = 1 / (4 n.l n.v (1 + L(v) + L(l))), L from the rational fit of Smith's masking of Beckmann facets. Walter et al. 2007, eq. 27.
+/// G2 / (4 n.l n.v) = 1 / (4 n.l n.v (1 + L(v) + L(l))), L from the rational fit of Smith's masking of Beckmann facets. Walter et al.
+/// 2007, eq. 27.
 ///
-/// cos(theta) L is multiplied out, so nothing is 0 / 0 at the horizon. The floor is reached where n.l and n.v are below 5e-9 (at alpha 1e-4),
-/// less than unit vectors can tell from 0.
+/// cos(theta) L is multiplied out, so nothing is 0 / 0 at the horizon. The floor is reached where n.l and n.v are below 5e-9 (at
+/// alpha 1e-4), less than unit vectors can tell from 0.
 fn masking(s: Surface, v: vec3f, l: vec3f, h: vec3f) -> f32 {
     let n_dot_v = dot(s.normal, v);
     let n_dot_l = dot(s.normal, l);

@@ -1,6 +1,7 @@
 /// A / (1 + B (1 - cos))^C, 1/sr, of the angle between n and h, with B = 2 / alpha^2 and A such that D n.h has the integral 1.
 ///
-/// 1 - cos is sin^2 / (1 + cos), with the sine from the cross product: the subtraction has no digits where the lobe of a smooth surface lies.
+/// 1 - cos is sin^2 / (1 + cos), with the sine from the cross product: the subtraction has no digits where the lobe of a smooth
+/// surface lies.
 fn distribution(s: Surface, h: vec3f) -> f32 {
     let cosine = dot(s.normal, h);
     let b = sharpness(s);
@@ -69,7 +70,8 @@ fn facet_toward(s: Surface, v: vec3f, sine: f32, cosine: f32, u: f32) -> vec3f {
     return select(h, turned, dot(v, h) < 0.0 && dot(v, turned) > 0.0);
 }
 
-/// How often h is drawn for once that its angle to n is: twice where v sees it but not h after half a turn, never where it is the other way round.
+/// How often h is drawn for once that its angle to n is: twice where v sees it but not h after half a turn, never where it is the
+/// other way round.
 fn facet_share(s: Surface, v: vec3f, h: vec3f) -> f32 {
     let here = dot(v, h);
     let turned = 2.0 * dot(s.normal, h) * dot(s.normal, v) - here;

@@ -16,7 +16,8 @@ fn distribution(s: Surface, h: vec3f) -> f32 {
     return select(0.0, k * k * INV_PI, cosine > 0.0);
 }
 
-/// A facet as v sees it (Heitz and d'Eon 2014, section 4): the slopes of a surface of alpha 1, seen from v stretched by alpha, along v and across.
+/// A facet as v sees it (Heitz and d'Eon 2014, section 4): the slopes of a surface of alpha 1, seen from v stretched by alpha, along
+/// v and across.
 fn facet_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
     let frame = frame_of(s.normal);
     let local = v * frame;
@@ -36,8 +37,8 @@ fn facet_pdf(s: Surface, v: vec3f, h: vec3f) -> f32 {
     return distribution(s, h) * max(dot(v, h), 0.0) / max(area, 1e-12);
 }
 
-/// Cosine and sine of the angle of v to n on a surface that is stretched to alpha 1, and the length that v has there. The floor is for v below
-/// the horizon, or along it and alpha 0.
+/// Cosine and sine of the angle of v to n on a surface that is stretched to alpha 1, and the length that v has there. The floor is
+/// for v below the horizon, or along it and alpha 0.
 fn stretched(s: Surface, v: vec3f) -> vec3f {
     let tangential = s.alpha * length(cross(s.normal, v));
     let normal = max(dot(s.normal, v), 0.0);
@@ -55,8 +56,8 @@ fn seen_above(cosine: f32, sine: f32, x: f32) -> f32 {
     return cosine * slopes_above(x) + 0.5 * INV_SQRT_PI * sine * exp(-x * x);
 }
 
-/// erfc(x) / 2, the share of Gaussian slopes above x. For x above 0 exp(-x^2) times a polynomial in t = 1 / (1 + x / 2), fitted for this module: the
-/// largest relative error for x in [0, 5.2] is 4e-7.
+/// erfc(x) / 2, the share of Gaussian slopes above x. For x above 0 exp(-x^2) times a polynomial in t = 1 / (1 + x / 2), fitted for
+/// this module: the largest relative error for x in [0, 5.2] is 4e-7.
 fn slopes_above(x: f32) -> f32 {
     let t = 1.0 / (1.0 + 0.5 * abs(x));
     let high = 0.012275627 + t * (0.4246231 + t * (-0.38162967 + t * 0.095196331));
@@ -67,8 +68,8 @@ fn slopes_above(x: f32) -> f32 {
 
 /// The slope toward v above which the given share of the projected area lies.
 ///
-/// The area's logarithm is concave in the slope, so Newton's method comes to it from above and converges; bounds halfway to either end catch
-/// its first step, which starts below. With v along the normal this is the quantile of a Gaussian.
+/// The area's logarithm is concave in the slope, so Newton's method comes to it from above and converges; bounds halfway to either
+/// end catch its first step, which starts below. With v along the normal this is the quantile of a Gaussian.
 fn slope_above(cosine: f32, sine: f32, share: f32) -> f32 {
     let lowest = lowest_slope(cosine, sine);
     // Shares below 1e-9 are steeper than 4: f32 has none between that and 0 here.

@@ -56,7 +56,8 @@ fn facet_toward(s: Surface, v: vec3f, sine: f32, cosine: f32, u: f32) -> vec3f {
     return select(h, turned, dot(v, h) < 0.0 && dot(v, turned) > 0.0);
 }
 
-/// How often h is drawn for once that its angle to n is: twice where v sees it but not h after half a turn, never where it is the other way round.
+/// How often h is drawn for once that its angle to n is: twice where v sees it but not h after half a turn, never where it is the
+/// other way round.
 fn facet_share(s: Surface, v: vec3f, h: vec3f) -> f32 {
     let here = dot(v, h);
     let turned = 2.0 * dot(s.normal, h) * dot(s.normal, v) - here;

@@ -14,8 +14,8 @@ fn distribution(s: Surface, h: vec3f) -> f32 {
     return select(0.0, 3.0 * k * k * INV_PI, cosine > 0.0);
 }
 
-/// A facet with the density D n.h of its angle. With x = sqrt(6) tan / alpha the share of facets up to x is 1 - (1 + x) exp(-x): its inverse
-/// is found by Newton's method on x - ln(1 + x) = -ln(1 - u), convex, from above. Four steps leave less than 1e-6.
+/// A facet with the density D n.h of its angle. With x = sqrt(6) tan / alpha the share of facets up to x is 1 - (1 + x) exp(-x): its
+/// inverse is found by Newton's method on x - ln(1 + x) = -ln(1 - u), convex, from above. Four steps leave less than 1e-6.
 fn facet_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
     // 1 - u is at least 6e-8 for the u that f32 has below 1.
     let target_log = max(-log(max(1.0 - u.x, 1e-30)), 0.0);
@@ -46,7 +46,8 @@ fn facet_toward(s: Surface, v: vec3f, sine: f32, cosine: f32, u: f32) -> vec3f {
     return select(h, turned, dot(v, h) < 0.0 && dot(v, turned) > 0.0);
 }
 
-/// How often h is drawn for once that its angle to n is: twice where v sees it but not h after half a turn, never where it is the other way round.
+/// How often h is drawn for once that its angle to n is: twice where v sees it but not h after half a turn, never where it is the
+/// other way round.
 fn facet_share(s: Surface, v: vec3f, h: vec3f) -> f32 {
     let here = dot(v, h);
     let turned = 2.0 * dot(s.normal, h) * dot(s.normal, v) - here;

@@ -18,8 +18,8 @@ fn width2(s: Surface) -> f32 {
     return max(s.alpha * s.alpha, 1e-18);
 }
 
-/// -ln(alpha^2) / (1 - alpha^2), 1 at alpha = 1. Above alpha^2 = 1/2, where this is nearly 0 / 0, by the series of artanh, whose first missing
-/// term is below 2e-8.
+/// -ln(alpha^2) / (1 - alpha^2), 1 at alpha = 1. Above alpha^2 = 1/2, where this is nearly 0 / 0, by the series of artanh, whose
+/// first missing term is below 2e-8.
 fn log_width(a2: f32) -> f32 {
     if a2 < 0.5 {
         return -log(a2) / (1.0 - a2);
@@ -73,7 +73,8 @@ fn facet_toward(s: Surface, v: vec3f, sine: f32, cosine: f32, u: f32) -> vec3f {
     return select(h, turned, dot(v, h) < 0.0 && dot(v, turned) > 0.0);
 }
 
-/// How often h is drawn for once that its angle to n is: twice where v sees it but not h after half a turn, never where it is the other way round.
+/// How often h is drawn for once that its angle to n is: twice where v sees it but not h after half a turn, never where it is the
+/// other way round.
 fn facet_share(s: Surface, v: vec3f, h: vec3f) -> f32 {
     let here = dot(v, h);
     let turned = 2.0 * dot(s.normal, h) * dot(s.normal, v) - here;
