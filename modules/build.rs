@@ -34,7 +34,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Rust that declares the `truth.rs` of every folder as a module, and the table of them all, sorted by folder.
+/// The parameters of FNV-1a in 64 bits.
+const FNV_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
+const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
+
+/// Rust that declares the `truth.rs` of every folder as a module, the table of them all, sorted by folder, and a digest of their
+/// texts and of what they are written with.
 fn truths(root: &Path) -> Result<String, Box<dyn Error>> {
     let mut folders = Vec::new();
     for category in folders_with(root, "category.ron")? {
@@ -52,13 +57,23 @@ fn truths(root: &Path) -> Result<String, Box<dyn Error>> {
         named.push((parts.join("/"), folder.join("truth.rs")));
     }
     named.sort();
+    let mut digest = FNV_BASIS;
+    let mut sources: Vec<PathBuf> = fs::read_dir(root.join("src/oracles"))?
+        .flatten()
+        .map(|entry| entry.path())
+        .collect();
+    sources.sort();
+    sources.extend(named.iter().map(|(_, path)| path.clone()));
+    for byte in sources.iter().map(fs::read).collect::<Result<Vec<_>, _>>()?.concat() {
+        digest = (digest ^ u64::from(byte)).wrapping_mul(FNV_PRIME);
+    }
     let mut text = String::new();
     let mut table = String::from("pub(super) static ALL: &[(&str, &[(&str, super::Truth)])] = &[\n");
     for (index, (name, path)) in named.iter().enumerate() {
         writeln!(text, "#[path = {:?}]\nmod of_{index};", path.display().to_string())?;
         writeln!(table, "    ({name:?}, of_{index}::TRUTHS),")?;
     }
-    Ok(text + &table + "];\n")
+    Ok(format!("{text}{table}];\npub(super) const DIGEST: u64 = {digest:#018x};\n"))
 }
 
 /// Folders directly in `folder` that hold the file `marker`.

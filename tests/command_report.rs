@@ -6,7 +6,7 @@ mod support;
 use std::path::Path;
 
 use serde_json::Value;
-use support::{bad, good, names};
+use support::{bad, good, names, run};
 
 fn read(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
@@ -61,10 +61,11 @@ fn compares_with_a_baseline() {
     baseline["rows"]["fresnel: schlick"]["cost"]["add"] = 99.into();
     let changed = folder.path().join("baseline.json");
     std::fs::write(&changed, baseline.to_string()).unwrap();
-    let ran = bad(&["report", "--check", changed.to_str().unwrap()], 1, &[]);
+    let ran = run(&["report", "--check", changed.to_str().unwrap()]);
+    assert_eq!(ran.status, 1);
     assert!(ran.text().contains("worse: fresnel: schlick: model error (rms)"), "{}", ran.text());
     assert!(ran.text().contains("better: fresnel: schlick: add"), "{}", ran.text());
-    let json = bad(&["report", "--check", changed.to_str().unwrap(), "--format", "json"], 1, &[]).json();
+    let json = run(&["report", "--check", changed.to_str().unwrap(), "--format", "json"]).json();
     assert_eq!(json["worse"].as_array().unwrap().len(), 1);
     std::fs::write(&changed, "{\"rows\": 1}").unwrap();
     bad(

@@ -8,6 +8,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 use shadewright_evaluate::Allowed;
+use shadewright_modules::oracles;
 use shadewright_runtime::gpu::Gpu;
 use shadewright_runtime::gpu::pipeline::Pipelines;
 use shadewright_runtime::probe::Evaluated;
@@ -248,7 +249,7 @@ pub(crate) fn key(subject: &Subject, rows: &[Json], effort: &Effort, provenance:
         device, driver, version, ..
     } = provenance;
     (device, driver, version, format!("{effort:?}"), subject.probe.program().hash()).hash(&mut hasher);
-    format!("{:?}", subject.metric()).hash(&mut hasher);
+    (oracles::DIGEST, format!("{:?}", subject.metric())).hash(&mut hasher);
     for row in rows {
         row.to_string().hash(&mut hasher);
     }
