@@ -19,15 +19,15 @@ fn distribution(s: Surface, h: vec3f) -> f32 {
 /// A facet as v sees it (Heitz and d'Eon 2014, section 4): the slopes of a surface of alpha 1, seen from v stretched by alpha, along
 /// v and across.
 fn facet_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
-    let frame = frame_of(s.normal);
-    let local = v * frame;
+    let basis = frame_of(s.normal);
+    let local = v * basis;
     let toward = stretched(s, v);
     let along = slope_above(toward.x, toward.y, u.x);
     let across = slope_above(1.0, 0.0, u.y);
     // Of a v along the normal any direction will do.
     let side = unit_or(vec3f(local.xy, 0.0), vec3f(1.0, 0.0, 0.0)).xy;
     let slope = s.alpha * (along * side + across * vec2f(-side.y, side.x));
-    return frame * normalize(vec3f(slope, 1.0));
+    return basis * normalize(vec3f(slope, 1.0));
 }
 
 /// D v.h over the projected area of the facets that v sees, 1/sr. Heitz 2014, eq. 16. 0 where h is turned from v.

@@ -38,11 +38,12 @@ fn facet_pdf(s: Surface, v: vec3f, h: vec3f) -> f32 {
 
 /// The facet (sine, cosine) turned about n by u.y; by half a turn more where v sees it only so. So v sees every facet that is drawn.
 fn facet_toward(s: Surface, v: vec3f, sine: f32, cosine: f32, u: f32) -> vec3f {
-    let frame = frame_of(s.normal);
-    let turn = 2.0 * PI * u;
+    let basis = frame_of(s.normal);
+    // Of angles beyond pi WGSL promises no sine.
+    let turn = PI * (2.0 * u - 1.0);
     let side = sine * vec2f(cos(turn), sin(turn));
-    let h = frame * vec3f(side, cosine);
-    let turned = frame * vec3f(-side, cosine);
+    let h = basis * vec3f(side, cosine);
+    let turned = basis * vec3f(-side, cosine);
     return select(h, turned, dot(v, h) < 0.0 && dot(v, turned) > 0.0);
 }
 
