@@ -16,12 +16,13 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
 ///
 /// The sine is taken from the cross product, which cancels nothing. The cap keeps the slope's square in range, the floor of the cosine its fourth
 /// power: the exponential is 0 long before either. The floor of alpha is far below what a surface has.
-fn beckmann(s: Surface, h: vec3f) -> f32 {
+fn beckmann(s: Surface, sum: vec3f) -> f32 {
     let alpha = max(s.alpha, 1e-12);
-    let cosine = abs(dot(s.normal, h));
-    let slope = min(length(cross(s.normal, h)) / (alpha * max(cosine, 1e-18)), 1e9);
-    let unit = max(cosine * inverseSqrt(max(dot(h, h), 1e-30)), 1e-8);
-    let square = unit * unit;
+    // Opposite directions have no half vector; any will do, the normal is as good.
+    let h = unit_or(sum, s.normal);
+    let cosine = max(abs(dot(s.normal, h)), 1e-8);
+    let slope = min(length(cross(s.normal, h)) / (alpha * cosine), 1e9);
+    let square = cosine * cosine;
     return exp(-slope * slope) / (square * square) * INV_PI / (alpha * alpha);
 }
 

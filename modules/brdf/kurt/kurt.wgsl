@@ -10,7 +10,8 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     // v.h = |v + l| / 2. Its floor and the cosines' are below what dot products of unit vectors can tell from 0; with widths of 1e-4 the peak
     // stays in range.
     let size = max(length(h), 1e-10);
-    let cosine = max(dot(s.normal, h) / size, 1e-8);
+    // Opposite directions, both at the horizon, have no half vector; any will do, the normal is as good.
+    let cosine = max(dot(s.normal, unit_or(h, s.normal)), 1e-8);
     let cosine2 = cosine * cosine;
     let d = exp(-slope_square(s, h)) / (cosine2 * cosine2) * INV_PI / area(s);
     let attenuation = pow(max(n_dot_v * n_dot_l, 1e-20), params.alpha_k);
@@ -63,9 +64,15 @@ fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
 /// 1/sr. A half vector drawn on the far side of v gives l below the horizon, and there v + l points into the surface: so without a sign.
 fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
     let h = v + l;
-    // v.h = |v + l| / 2. Where l is opposite to v no half vector mirrors one into the other. Where cos is at its floor the exponential is 0.
-    let size = max(length(h), 1e-12);
+    let size = length(h);
+    let diffuse = cosine_pdf(s.normal, l);
+    let share = lobe_share(s, v);
+    // Where l is opposite to v no half vector mirrors one into the other; f32 has no shorter sum of unit vectors but 0.
+    if size < 1e-12 {
+        return (1.0 - share) * diffuse;
+    }
+    // v.h = |v + l| / 2. Where cos is at its floor the exponential is 0.
     let cosine = max(abs(dot(s.normal, h)) / size, 1e-8);
     let lobe = exp(-slope_square(s, h)) / (cosine * cosine * cosine) * INV_PI / area(s) * 0.5 / size;
-    return mix(cosine_pdf(s.normal, l), lobe, lobe_share(s, v));
+    return mix(diffuse, lobe, share);
 }

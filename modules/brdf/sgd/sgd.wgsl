@@ -7,8 +7,8 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
         return vec3f(0.0);
     }
     let h = v + l;
-    // v.h = |v + l| / 2. The floor is below what dot products of unit vectors can tell from 0.
-    let shadowed = visible(n_dot_v) * visible(n_dot_l) / max(n_dot_v * n_dot_l, 1e-28);
+    // v.h = |v + l| / 2. The floor is below what dot products of unit vectors can tell from 0, and keeps all in range.
+    let shadowed = visible(n_dot_v) * visible(n_dot_l) / max(n_dot_v * n_dot_l, 1e-20);
     let facets = params.rho_s * reflected(0.5 * length(h)) * distribution(slope_square(s, h)) * shadowed;
     return (params.rho_d + facets) * INV_PI;
 }

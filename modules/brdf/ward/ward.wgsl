@@ -51,9 +51,15 @@ fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
 /// 1/sr. A half vector drawn on the far side of v gives l below the horizon, and there v + l points into the surface: so without a sign.
 fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
     let h = v + l;
-    // v.h = |v + l| / 2. Where l is opposite to v no half vector mirrors one into the other. Where cos is at its floor the exponential is 0.
-    let size = max(length(h), 1e-12);
+    let size = length(h);
+    let diffuse = cosine_pdf(s.normal, l);
+    let share = lobe_share(s);
+    // Where l is opposite to v no half vector mirrors one into the other; f32 has no shorter sum of unit vectors but 0.
+    if size < 1e-12 {
+        return (1.0 - share) * diffuse;
+    }
+    // v.h = |v + l| / 2. Where cos is at its floor the exponential is 0.
     let cosine = max(abs(dot(s.normal, h)) / size, 1e-8);
     let lobe = exp(-slope_square(s, h)) / (cosine * cosine * cosine) * INV_PI / area(s) * 0.5 / size;
-    return mix(cosine_pdf(s.normal, l), lobe, lobe_share(s));
+    return mix(diffuse, lobe, share);
 }
