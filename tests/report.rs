@@ -87,7 +87,9 @@ fn planted_faults_are_found_and_named() {
     let corner = ggx("return d * select(1.0, 1.03, s.alpha > 0.3 && h.x > 0.8);");
     // 0 / 0 where alpha is 0.01 and the facet lies flat, one of the hard inputs; a factor of one elsewhere.
     let nan = ggx("let x = abs(s.alpha - 0.01) + abs(h.x) + abs(h.z - 1.0);\n    return d * (sqrt(x) / sqrt(x));");
-    let slow = ggx("var sum = 0.0;\n    for (var i = 0; i < 64; i++) { let x = f32(i) * h.x; sum += d * (cos(x) * cos(x) + sin(x) * sin(x)); }\n    return sum / 64.0;");
+    let slow = ggx(
+        "var sum = 0.0;\n    for (var i = 0; i < 64; i++) { let x = f32(i) * h.x; sum += d * (cos(x) * cos(x) + sin(x) * sin(x)); }\n    return sum / 64.0;",
+    );
     let experiment = experiment();
     let (_folder, library) = with(&[
         ("ndf/ndf.experiment.ron", experiment.as_str()),

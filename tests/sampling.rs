@@ -1,7 +1,7 @@
 //! What is drawn has the density that is said: chi-square tests of every module that draws directions, on the device.
 //!
 //! As pbrt and Mitsuba do it: directions are counted in bins, and held against the integral of the density over each bin. The bins are finer
-//! toward +z, the surface's normal, around which a narrow lobe lies: cos = 1 - 2 t^2 for t in [0, 1].
+//! toward the direction around which a narrow lobe lies (the mirrored eye; of facets the normal): cos = 1 - 2 t^2 for t in [0, 1].
 
 #![allow(clippy::expect_used, clippy::unwrap_used)]
 
@@ -10,6 +10,7 @@ mod common;
 use std::f64::consts::TAU;
 
 use common::{catalog, gpu};
+use glam::{DMat3, DVec3};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use serde_json::{Value as Json, json};
@@ -21,7 +22,7 @@ use shadewright::runtime::probe::Probe;
 const SAMPLES: usize = 30_000;
 /// Bins of t and around z.
 const BINS: [usize; 2] = [32, 32];
-/// Points of a bin's integral in each direction: a narrow lobe is narrower than a bin.
+/// Strata of a bin's integral in each direction, with a random point in each: the integral has an error, which is known.
 const POINTS: usize = 5;
 /// Probability by which all tests together may fail a correct module.
 const SIGNIFICANCE: f64 = 0.01;
@@ -37,20 +38,19 @@ fn direction(cosine: f64, turn: f64) -> [f64; 3] {
     [sine * turn.cos(), sine * turn.sin(), cosine]
 }
 
-/// The bin of a direction; none for what is no direction.
-fn bin(d: &[f64]) -> Option<usize> {
-    let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+/// The bin of a direction in a frame around z; none for what is no direction.
+fn bin(d: DVec3) -> Option<usize> {
+    let length = d.length();
     assert!(length.is_finite(), "{d:?}");
     if length < 0.5 {
         return None;
     }
     assert!((length - 1.0).abs() < 1e-4, "not of unit length: {d:?}");
     // From the sine near the pole, where the cosine has few digits.
-    let (sine, cosine) = (d[0].hypot(d[1]), d[2]);
-    let t = (sine.atan2(cosine) / 2.0).sin();
-    let cosine = (t * BINS[0] as f64) as usize;
-    let turn = (d[1].atan2(d[0]).rem_euclid(TAU) / TAU * BINS[1] as f64) as usize;
-    Some(cosine.min(BINS[0] - 1) * BINS[1] + turn.min(BINS[1] - 1))
+    let t = (d.x.hypot(d.y).atan2(d.z) / 2.0).sin();
+    let turn = (d.y.atan2(d.x).rem_euclid(TAU) / TAU * BINS[1] as f64) as usize;
+    let ring = (t * BINS[0] as f64) as usize;
+    Some(ring.min(BINS[0] - 1) * BINS[1] + turn.min(BINS[1] - 1))
 }
 
 /// A module's function that draws and the one that says the density, for one surface and eye.
@@ -72,34 +72,61 @@ impl Sampler<'_> {
         row
     }
 
-    /// Directions in each bin, and what the density says, both as shares; the last bin is of what is no direction.
-    fn shares(&self, samples: usize) -> (Vec<f64>, Vec<f64>) {
+    /// Columns of a frame around where narrow lobes lie.
+    fn frame(&self) -> DMat3 {
+        let [x, y, z] = self.eye;
+        let pole = if self.drawn == "l" { DVec3::new(-x, -y, z) } else { DVec3::Z };
+        let (a, b) = pole.any_orthonormal_pair();
+        DMat3::from_cols(a, b, pole)
+    }
+
+    /// Share of the directions in each bin; what the density says, and the variance of that. The last bin is of what is no direction.
+    fn shares(&self, samples: usize) -> (Vec<f64>, Vec<(f64, f64)>) {
+        let frame = self.frame();
         let mut random = Pcg64::new(7, 11);
         let mut unit = || (random.next_u64() >> 40) as f64 / (1u64 << 24) as f64;
         let rows: Vec<Json> = (0..samples).map(|_| self.row("u", json!([unit(), unit()]))).collect();
         let mut found = vec![0.0; BINS[0] * BINS[1] + 1];
         for drawn in values(self.catalog, self.recipe, self.sample, &rows) {
-            let at = bin(&drawn).unwrap_or(BINS[0] * BINS[1]);
+            let drawn = frame.transpose() * DVec3::new(drawn[0], drawn[1], drawn[2]);
+            let at = bin(drawn).unwrap_or(BINS[0] * BINS[1]);
             found[at] += 1.0 / samples as f64;
         }
         let (mut rows, mut areas) = (Vec::new(), Vec::new());
         for cosine in 0..BINS[0] * POINTS {
             for turn in 0..BINS[1] * POINTS {
-                let t = (cosine as f64 + 0.5) / (BINS[0] * POINTS) as f64;
-                let turn = (turn as f64 + 0.5) / (BINS[1] * POINTS) as f64 * TAU;
-                rows.push(self.row(self.drawn, json!(direction(1.0 - 2.0 * t * t, turn))));
-                areas.push(4.0 * t * TAU / (BINS[0] * POINTS * BINS[1] * POINTS) as f64);
+                let t = (cosine as f64 + unit()) / (BINS[0] * POINTS) as f64;
+                let turn = (turn as f64 + unit()) / (BINS[1] * POINTS) as f64 * TAU;
+                rows.push(self.row(
+                    self.drawn,
+                    json!((frame * DVec3::from(direction(1.0 - 2.0 * t * t, turn))).to_array()),
+                ));
+                areas.push(4.0 * t * TAU / (BINS[0] * BINS[1]) as f64);
             }
         }
-        let mut expected = vec![0.0; BINS[0] * BINS[1] + 1];
+        let mut moments = vec![[0.0; 2]; BINS[0] * BINS[1]];
         for (at, density) in values(self.catalog, self.recipe, self.pdf, &rows).iter().enumerate() {
             assert!(density[0] >= 0.0 && density[0].is_finite(), "{density:?} at {}", rows[at]);
             let (cosine, turn) = (at / (BINS[1] * POINTS) / POINTS, at % (BINS[1] * POINTS) / POINTS);
-            expected[cosine * BINS[1] + turn] += density[0] * areas[at];
+            let share = density[0] * areas[at];
+            let moments = &mut moments[cosine * BINS[1] + turn];
+            *moments = [moments[0] + share, moments[1] + share * share];
         }
-        let total: f64 = expected.iter().sum();
-        assert!(total < 1.01, "the density of {} integrates to {total}", self.recipe);
-        expected[BINS[0] * BINS[1]] = (1.0 - total).max(0.0);
+        let count = (POINTS * POINTS) as f64;
+        let estimate = |[sum, squares]: &[f64; 2]| {
+            let mean = sum / count;
+            // Strata only make it smaller.
+            (mean, (squares / count - mean * mean).max(0.0) / (count - 1.0))
+        };
+        let mut expected: Vec<(f64, f64)> = moments.iter().map(estimate).collect();
+        let total: f64 = expected.iter().map(|e| e.0).sum();
+        let error = expected.iter().map(|e| e.1).sum::<f64>().sqrt();
+        assert!(
+            total < 1.001 + 5.0 * error,
+            "the density of {} integrates to {total} +- {error}",
+            self.recipe
+        );
+        expected.push(((1.0 - total).max(0.0), error * error));
         (found, expected)
     }
 
@@ -107,22 +134,21 @@ impl Sampler<'_> {
     fn p_value(&self, samples: usize) -> f64 {
         let (found, expected) = self.shares(samples);
         let n = samples as f64;
-        // Bins with few expected directions go together.
+        // Bins with few expected directions go together. What is not known of a bin's integral counts for less.
         let (mut statistic, mut degrees) = (0.0, -1.0);
-        let mut pooled = (0.0, 0.0);
-        for (found, expected) in found.iter().zip(&expected) {
+        let mut pooled = [0.0; 3];
+        for (found, (expected, variance)) in found.iter().zip(&expected) {
             if expected * n < 5.0 {
-                pooled = (pooled.0 + found * n, pooled.1 + expected * n);
+                pooled = [pooled[0] + found, pooled[1] + expected, pooled[2] + variance];
             } else {
-                statistic += (found - expected).powi(2) * n / expected;
+                statistic += (found - expected).powi(2) / (expected / n + variance);
                 degrees += 1.0;
             }
         }
-        if pooled.1 >= 5.0 {
-            statistic += (pooled.0 - pooled.1).powi(2) / pooled.1;
+        let [found, expected, variance] = pooled;
+        if found.max(expected) * n >= 5.0 {
+            statistic += (found - expected).powi(2) / (expected.max(5.0 / n) / n + variance);
             degrees += 1.0;
-        } else if pooled.0 > 25.0 {
-            return 0.0;
         }
         chi_square(statistic, f64::max(degrees, 1.0))
     }

@@ -26,7 +26,14 @@ use shadewright::runtime::probe::Probe;
 const ROWS: usize = 400;
 
 /// Functions of which WGSL leaves more open than [`MOST_OPEN`], how much at most, and why.
-const OPEN: &[(&str, f64, &str)] = &[];
+const OPEN: &[(&str, f64, &str)] = &[
+    (
+        "brdf/cook-torrance brdf_sample",
+        0.4,
+        "the root of -log near 1, whose absolute error may take it below 0",
+    ),
+    ("brdf/kurt brdf_sample", 0.4, "the same"),
+];
 /// Largest share of numbers of a function of which nothing can be said.
 const MOST_OPEN: f64 = 0.3;
 
