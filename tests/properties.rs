@@ -1,7 +1,7 @@
 //! What the manifests of BRDFs and of their diffuse parts claim, checked on the device over stratified and hard directions; and what none
 //! of them may do.
 
-#![allow(clippy::expect_used, clippy::unwrap_used)]
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::print_stdout)]
 
 mod common;
 
