@@ -114,7 +114,11 @@ impl Checker<'_> {
             let message = format!("`{folder}` has no closed form for `{function}`");
             self.error(index, &[Step::Key("truth")], codes::UNKNOWN_TRUTH, message, "asked for here");
             if let Some(error) = self.errors.pop() {
-                self.errors.push(error.suggest(folder, "folders", oracles::folders()));
+                self.errors.push(error.suggest(
+                    folder,
+                    "folders",
+                    oracles::folders().filter(|of| oracles::truth(of, function).is_some()),
+                ));
             }
         }
         self.inputs(index, declared);
