@@ -21,7 +21,8 @@ fn brdf(at: &At) -> Vec<f64> {
         let d = param("kappa") * (-x).exp() / (PI * x.powf(param("p")) * theta_h.cos().powi(4));
         let f = param("f0") - param("f1") * cosine + (1.0 - param("f0")) * (1.0 - cosine).powi(5);
         let g1 = |theta: f64| {
-            let grown = (param("c") * (theta - param("theta_0")).max(0.0).powf(param("k"))).exp();
+            // Where the power is beyond all numbers, a strength of 0 is still none.
+            let grown = (param("c") * (theta - param("theta_0")).max(0.0).powf(param("k"))).min(700.0).exp();
             (1.0 + param("lambda") * (1.0 - grown)).clamp(0.0, 1.0)
         };
         let specular = f.max(0.0) * d * g1(theta_v) * g1(theta_l) / (theta_v.cos() * theta_l.cos());
