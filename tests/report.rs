@@ -141,7 +141,8 @@ fn planted_faults_are_found_and_named() {
         slow.executed.mean, good.executed.mean
     );
     assert!(slow.executed.mean > 10.0 * good.executed.mean && slow.executed.trips == 64.0 && slow.dominated && !good.dominated);
-    assert!(report.provenance.device.is_empty() || time > 1.5, "{time}");
+    // The operations decide; the time only has to point the same way, on a machine that does other things too.
+    assert!(time > 1.2, "{time}");
 }
 
 /// Catches a baseline that lets a worse module pass, or that does not say which.
