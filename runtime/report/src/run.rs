@@ -241,6 +241,10 @@ impl Run<'_> {
         let Some(times) = time(device.pipelines, device.gpu, &alternatives, REPETITIONS, self.options.cancel)? else {
             return Ok(());
         };
+        if self.options.cancel.load(Ordering::Relaxed) {
+            // Fewer repetitions than it says are no figures.
+            return Err(MeasureError::Interrupted);
+        }
         let Some(base) = rows.iter().position(|row| row.label == baseline) else {
             return Ok(());
         };
