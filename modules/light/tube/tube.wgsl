@@ -1,0 +1,231 @@
+/// The axis, unit length.
+fn axis(i: u32) -> vec3f {
+    return unit_or(instances[i].along, vec3f(1.0, 0.0, 0.0));
+}
+
+/// Luminance, with the flux spread over all that shines: phi / (pi A). The floor stands for a square of a thousandth of a millimetre.
+fn shape_luminance(i: u32) -> vec3f {
+    var area = 2.0 * PI * instances[i].radius * instances[i].length;
+    if params.caps {
+        area += 2.0 * PI * instances[i].radius * instances[i].radius;
+    }
+    return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * max(area, 1e-12)));
+}
+
+fn shape_centre(i: u32) -> vec3f {
+    return instances[i].position;
+}
+
+/// Of the disk with the area that the tube shows from the side.
+fn shape_radius(i: u32) -> f32 {
+    return sqrt(2.0 * INV_PI * instances[i].radius * instances[i].length);
+}
+
+/// A rectangle from the side, a disk from the end.
+fn shape_projected_area(i: u32, origin: vec3f) -> f32 {
+    let toward = unit_or(origin - instances[i].position, vec3f(0.0));
+    let side = 2.0 * instances[i].radius * instances[i].length * length(cross(toward, axis(i)));
+    if params.caps {
+        return side + PI * instances[i].radius * instances[i].radius * abs(dot(toward, axis(i)));
+    }
+    return side;
+}
+
+/// The tube from the origin: columns are the direction from the nearest point of its axis to the origin, the one perpendicular to that and the axis,
+/// and the axis.
+fn seen_frame(i: u32, c: vec3f) -> mat3x3f {
+    let e = axis(i);
+    let w = unit_or(e * dot(c, e) - c, frame_of(e)[0]);
+    return mat3x3f(w, cross(e, w), e);
+}
+
+/// Side of the end that shows its cap: 1, -1, or 0 where neither does.
+fn cap_side(i: u32, c: vec3f) -> f32 {
+    let along = dot(c, axis(i));
+    return select(0.0, -sign(along), abs(along) > 0.5 * instances[i].length);
+}
+
+/// Share of the samples that goes to the cap that is seen: that of what both show.
+fn cap_share(i: u32, c: vec3f) -> f32 {
+    if params.caps {
+        let side = cap_side(i, c);
+        let end = c + axis(i) * (0.5 * side * instances[i].length);
+        let away = length(cross(c, axis(i)));
+        let cap = PI * instances[i].radius * instances[i].radius * abs(dot(unit_or(end, vec3f(0.0)), axis(i)) * side);
+        let flank = 2.0 * instances[i].radius * instances[i].length * away / max(length(c), 1e-15);
+        return select(cap / max(cap + flank, 1e-30), side * side, away <= instances[i].radius);
+    }
+    return 0.0;
+}
+
+/// Half the angle about the axis that is seen from a distance from it; 0 within the radius.
+fn half_turn(i: u32, away: f32) -> f32 {
+    let r = instances[i].radius;
+    return select(0.0, angle_of(sqrt(max((away - r) * (away + r), 0.0)), r), away > r);
+}
+
+/// Evenly over the part of the side that is seen, and over the cap.
+fn shape_sample(i: u32, origin: vec3f, u: vec2f) -> vec3f {
+    let c = instances[i].position - origin;
+    let frame = seen_frame(i, c);
+    let share = cap_share(i, c);
+    if u.x < share {
+        let out = instances[i].radius * sqrt(u.x / share);
+        let turn = PI * (2.0 * u.y - 1.0);
+        let at = vec3f(out * cos(turn), out * sin(turn), 0.5 * instances[i].length * cap_side(i, c));
+        return unit_or(c + frame * at, -frame[2]);
+    }
+    let x = (u.x - share) / max(1.0 - share, 1e-7) - 0.5;
+    let turn = half_turn(i, dot(-c, frame[0])) * (2.0 * u.y - 1.0);
+    let at = vec3f(instances[i].radius * cos(turn), instances[i].radius * sin(turn), instances[i].length * x);
+    return unit_or(c + frame * at, -frame[0]);
+}
+
+/// d^2 / (A cos), 1/sr, where l meets the side or the cap first.
+fn shape_pdf(i: u32, origin: vec3f, l: vec3f) -> f32 {
+    let c = instances[i].position - origin;
+    let frame = seen_frame(i, c);
+    let center = c * frame;
+    let ray = l * frame;
+    let r = instances[i].radius;
+    let half = 0.5 * instances[i].length;
+    let share = cap_share(i, c);
+    if params.caps {
+        let end = center.z + cap_side(i, c) * half;
+        let distance = end / select(ray.z, 1e-30, ray.z == 0.0);
+        let out = length(ray.xy * distance - center.xy);
+        if share > 0.0 && distance > 0.0 && out <= r * 1.00001 + 1e-6 * distance {
+            return share * distance * distance / (PI * max(r * r, 1e-30) * max(abs(ray.z), 1e-7));
+        }
+    }
+    // The root of |t ray - center| = r, across the axis, that is nearer.
+    let away = length(center.xy);
+    let outside = (away - r) * (away + r);
+    let square = dot(ray.xy, ray.xy);
+    let toward = dot(ray.xy, center.xy);
+    let miss = ray.x * center.y - ray.y * center.x;
+    let under = square * r * r - miss * miss;
+    if outside <= 0.0 || toward <= 0.0 || under <= 0.0 {
+        return 0.0;
+    }
+    let distance = outside / (toward + sqrt(under));
+    if abs(ray.z * distance - center.z) > half + 1e-6 * distance {
+        return 0.0;
+    }
+    let cosine = sqrt(under) / max(r, 1e-15);
+    let area = 2.0 * half_turn(i, away) * r * instances[i].length;
+    return (1.0 - share) * distance * distance / max(area * cosine, 1e-30);
+}
+
+fn shape_radiance(i: u32, origin: vec3f, l: vec3f) -> vec3f {
+    return shape_luminance(i) * sign(shape_pdf(i, origin, l));
+}
+
+fn shape_configuration_factor(i: u32, origin: vec3f, n: vec3f) -> f32 {
+    return shape_form_factor(i, origin, transpose(frame_of(n)));
+}
+
+/// Direction from the axis at the angle 2 atan(t) from the line of the side that faces the origin.
+fn out_at(frame: mat3x3f, t: f32) -> vec3f {
+    return (frame[0] * (1.0 - t * t) + frame[1] * (2.0 * t)) / (1.0 + t * t);
+}
+
+/// What a line of the side gives, with the width that it stands for by t.
+fn line_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, t: f32) -> f32 {
+    let r = instances[i].radius;
+    let scale = 1.0 / (1.0 + t * t);
+    let width = 2.0 * scale * r * (away * (1.0 - t * t) * scale - r);
+    return width * segment_integral(local * (c + out_at(frame, t) * r), local * (frame[2] * (0.5 * instances[i].length)));
+}
+
+/// The side of a thin tube: lines along it, each integrated exactly, and across them Gauss and Legendre's eight points, which are off by 4e-5.
+/// No terms cancel, however thin it is.
+fn thin_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, last: f32) -> f32 {
+    let x = array<f32, 4>(0.1834346425, 0.5255324099, 0.7966664774, 0.9602898565);
+    let w = array<f32, 4>(0.3626837834, 0.3137066459, 0.2223810345, 0.1012285363);
+    var sum = 0.0;
+    for (var k = 0; k < 4; k++) {
+        sum += w[k] * (line_factor(i, frame, c, away, local, last * x[k]) + line_factor(i, frame, c, away, local, -last * x[k]));
+    }
+    return sum * last * abs(determinant(local)) * 0.5 * instances[i].length * INV_PI;
+}
+
+/// The side of a thick tube by its outline: two lines, and the arcs of the ends, each in twelve chords. A chord over the angle delta loses delta^2 / 12 of
+/// the radius in the mean, so its ends are that far out, but those where the lines begin.
+fn outline_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, last: f32) -> f32 {
+    let half = frame[2] * (0.5 * instances[i].length);
+    var rim = vec2f(0.0);
+    var sum = 0.0;
+    var at = local * (c + half + out_at(frame, -last) * instances[i].radius);
+    for (var k = 1u; k < 26u; k++) {
+        let is_far = k > 12u;
+        let step = select(k, 25u - k, is_far);
+        let t = last * (f32(step) / 6.0 - 1.0);
+        let delta = last / (3.0 + 3.0 * t * t);
+        let out = select(1.0, 1.0 + delta * delta / 12.0, step > 0u && step < 12u);
+        let next = local * (c + select(half, -half, is_far) + out_at(frame, t) * (out * instances[i].radius));
+        sum += edge_above(at, next - at, &rim);
+        at = next;
+    }
+    let first = local * (c + half + out_at(frame, -last) * instances[i].radius);
+    sum += edge_above(at, first - at, &rim);
+    return abs(sum) * 0.159154943091895;
+}
+
+/// The side and, where it shines, the cap that is seen. The tangent of half the angle about the axis is the variable: it needs no sine, and the side is
+/// seen up to sqrt((away - r) / (away + r)).
+fn shape_form_factor(i: u32, origin: vec3f, local: mat3x3f) -> f32 {
+    let c = instances[i].position - origin;
+    let frame = seen_frame(i, c);
+    let r = instances[i].radius;
+    let half = 0.5 * instances[i].length;
+    let away = -dot(c, frame[0]);
+    var sum = 0.0;
+    if away > r {
+        let last = sqrt((away - r) / (away + r));
+        let middle = local * c;
+        let along = local * frame[2];
+        let nearest = middle - along * clamp(dot(middle, along) / max(dot(along, along), 1e-30), -half, half);
+        let across = max(length(local * frame[0]), length(local * frame[1])) * r;
+        if across < 0.15 * length(nearest) {
+            sum = thin_factor(i, frame, c, away, local, last);
+        } else {
+            sum = outline_factor(i, frame, c, away, local, last);
+        }
+    }
+    if params.caps {
+        let side = cap_side(i, c);
+        if side != 0.0 {
+            sum += ellipse_factor(local * (c + frame[2] * (side * half)), local * (frame[0] * r), local * (frame[1] * r));
+        }
+    }
+    return sum;
+}
+
+/// The point of the axis nearest to the ray, moved toward it by the radius.
+fn shape_toward(i: u32, origin: vec3f, along: vec3f) -> vec3f {
+    let c = instances[i].position - origin;
+    let e = axis(i);
+    let slope = dot(along, e);
+    // Both lines parallel: any point is as near.
+    let x = (slope * dot(along, c) - dot(c, e)) / max(1.0 - slope * slope, 1e-6);
+    let half = 0.5 * instances[i].length;
+    return sphere_toward(c + e * clamp(x, -half, half), instances[i].radius, along);
+}
+
+/// Radiance toward v because of all tubes, cd/m2.
+fn light(s: Surface, v: vec3f) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < arrayLength(&instances); i++) {
+        let radiance = illuminate(i, s, v);
+        if max(radiance.x, max(radiance.y, radiance.z)) > 0.0 {
+            let offset = shape_centre(i) - s.position;
+            var ray: Ray;
+            ray.light = i;
+            ray.direction = unit_or(offset, s.normal);
+            ray.distance = length(offset);
+            sum += radiance * visible(ray, s);
+        }
+    }
+    return sum;
+}
