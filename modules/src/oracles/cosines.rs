@@ -62,16 +62,19 @@ pub struct Cosine {
 /// Numbers of a cell of a table: M^-1 [0][0], [0][2], [2][0] and [2][2], A and the Fresnel term. See [`Cosine::cell`].
 pub const NUMBERS: usize = 6;
 
+/// Rows and columns of the tables that shaders read.
+pub const SIDE: usize = 32;
+
 /// Smallest alpha of a table. Below it a lobe is its limit: to f32 a mirror.
 const SMOOTHEST: f64 = 1e-4;
 /// Angles of incidence a table's ends stand for, radians: at 0 and 90 degrees two of its numbers are 0 / 0.
 const STEEPEST: f64 = 0.1;
-const FLATTEST: f64 = 1.5702;
+const FLATTEST: f64 = 1.570_795;
 /// Strata of the samples in each dimension. The edge of a half space goes through some 100 of 10^4 cells: its integral is good to 3e-4, and
 /// the errors of the half spaces are independent.
-const STRATA: usize = 96;
+const STRATA: usize = 64;
 /// Half spaces. By the lobe's symmetry each stands for four.
-const HALF_SPACES: usize = 400;
+const HALF_SPACES: usize = 300;
 /// How much wider than the lobe the half spaces are spread, each as many: edges far away see its tails.
 const SPREADS: [f64; 4] = [1.0, 4.0, 16.0, 64.0];
 /// Weight of a half space: the density of great circles, uniform on the sphere, over that with which they were drawn, to this power. 1 is the
@@ -108,19 +111,20 @@ impl Cosine {
 
     /// What a table holds of it, for the angle of incidence theta.
     ///
-    /// M^-1 is taken in the frame around the mirrored view, of which the shader knows the direction exactly; its middle number is made 1, since
-    /// a map's length is nothing to directions. What is left is divided by what it vanishes with: the third row by alpha, and the two numbers that mix x and z
-    /// by alpha sin(theta). For alpha to 0 the lobe is 2 alpha wide, and 2 alpha cos(theta) across, and the numbers go to cos(theta), finite ones and 2 cos(theta):
-    /// smooth functions of roughness and cosine, so that few cells do.
+    /// M^-1 is taken in the frame around the mirrored view, whose direction the shader knows exactly, and its middle number is made 1, since a map's
+    /// length is nothing to directions. What is left is divided by what it vanishes with: the third row by alpha, the two numbers that mix
+    /// x and z by alpha sin(theta), and the two others by alpha + cos(theta). A smooth surface's lobe is 2 alpha wide, and 2 alpha cos(theta) across; within
+    /// alpha of the horizon that ends. So the numbers are of the order 1 and smooth, and few cells do.
     pub fn cell(&self, alpha: f64, theta: f64) -> [f64; NUMBERS] {
         let map = self.inverse() * turn(-theta);
         let scale = 1.0 / map.y_axis.y;
         let skew = scale / (alpha * libm::sin(theta));
+        let narrow = libm::cos(theta) + alpha;
         [
-            map.x_axis.x * scale,
+            map.x_axis.x * scale / narrow,
             map.z_axis.x * skew,
             map.x_axis.z * skew,
-            map.z_axis.z * scale / alpha,
+            map.z_axis.z * scale / (alpha * narrow),
             libm::exp(self.amplitude),
             self.fresnel,
         ]
@@ -129,8 +133,9 @@ impl Cosine {
     /// [`Self::cell`] undone: M^-1 for offsets in the frame of tangent, bitangent and normal, and A.
     pub fn of_cell(cell: &[f64; NUMBERS], alpha: f64, theta: f64) -> (DMat3, f64) {
         let skew = alpha * libm::sin(theta);
-        let x = DVec3::new(cell[0], 0.0, cell[2] * skew);
-        let z = DVec3::new(cell[1] * skew, 0.0, cell[3] * alpha);
+        let narrow = libm::cos(theta) + alpha;
+        let x = DVec3::new(cell[0] * narrow, 0.0, cell[2] * skew);
+        let z = DVec3::new(cell[1] * skew, 0.0, cell[3] * alpha * narrow);
         (DMat3::from_cols(x, DVec3::Y, z) * turn(-theta).transpose(), cell[4])
     }
 
@@ -346,16 +351,18 @@ pub fn alpha_of(row: usize, side: usize) -> f64 {
     f64::max(roughness * roughness, SMOOTHEST)
 }
 
-/// Angle of incidence of a column: they are evenly spaced in the root of the cosine, from 90 degrees down, radians. The cosine itself leaves too few to
-/// grazing views, where a lobe changes within alpha of the horizon.
-pub fn theta_of(column: usize, side: usize) -> f64 {
+/// Angle of incidence of a column, radians: they are evenly spaced in the root of m (1 + alpha) / (m + alpha), m its cosine, from 90 degrees down. A lobe
+/// changes most where m is about alpha, and it is cut by the horizon.
+pub fn theta_of(column: usize, side: usize, alpha: f64) -> f64 {
     let root = column as f64 / (side - 1) as f64;
-    libm::acos(root * root).clamp(STEEPEST, FLATTEST)
+    let place = root * root;
+    libm::acos(f64::min(place * alpha / (1.0 + alpha - place), 1.0)).clamp(STEEPEST, FLATTEST)
 }
 
 /// One cell of a lobe's table of `side` times `side` cells.
 pub fn cell(lobe: Lobe, row: usize, column: usize, side: usize) -> [f64; NUMBERS] {
-    let (alpha, theta) = (alpha_of(row, side), theta_of(column, side));
+    let alpha = alpha_of(row, side);
+    let theta = theta_of(column, side, alpha);
     Cosine::fit(lobe, alpha, theta).cell(alpha, theta)
 }
 
@@ -383,7 +390,9 @@ pub fn table(lobe: Lobe, side: usize) -> Vec<f32> {
 /// M^-1 and A from a table, interpolated linearly between four cells.
 pub fn look_up(table: &[f32], side: usize, alpha: f64, cosine: f64) -> (DMat3, f64) {
     let last = (side - 1) as f64;
-    let (x, y) = (cosine.clamp(0.0, 1.0).sqrt() * last, alpha.clamp(0.0, 1.0).sqrt() * last);
+    let alpha = alpha.clamp(SMOOTHEST, 1.0);
+    let m = cosine.clamp(0.0, 1.0);
+    let (x, y) = ((m * (1.0 + alpha) / (m + alpha)).sqrt() * last, alpha.sqrt() * last);
     let (column, row) = (f64::min(x.floor(), last - 1.0), f64::min(y.floor(), last - 1.0));
     let mut cell = [0.0; NUMBERS];
     for (down, across) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
@@ -394,5 +403,5 @@ pub fn look_up(table: &[f32], side: usize, alpha: f64, cosine: f64) -> (DMat3, f
             *sum += weight * f64::from(*number);
         }
     }
-    Cosine::of_cell(&cell, alpha, libm::acos(cosine.clamp(0.0, 1.0)))
+    Cosine::of_cell(&cell, alpha, libm::acos(m))
 }

@@ -1,0 +1,6 @@
+var<storage> table: array<vec2f, 3072>;
+
+/// As `table.rs` made it.
+fn cosine_pair(k: u32) -> vec2f {
+    return table[k];
+}
