@@ -54,5 +54,8 @@ fn highlight(i: u32, s: Surface, v: vec3f) -> vec3f {
     let first = forward * (cell.first.x * narrow) + mirror * (cell.first.y * skew);
     let third = forward * (cell.third.x * skew) + mirror * (cell.third.y * alpha * narrow);
     let factor = shape_form_factor(i, s.position, transpose(mat3x3f(first, y, third)));
-    return shape_luminance(i) * (s.f0 * cell.integrals.x + (1.0 - s.f0) * cell.integrals.y) * factor;
+    // The table's second integral is B less what level facets would have.
+    let c = 1.0 - m;
+    let grazing = cell.integrals.x * (c * c) * (c * c) * c + cell.integrals.y;
+    return shape_luminance(i) * (s.f0 * cell.integrals.x + (1.0 - s.f0) * grazing) * factor;
 }

@@ -53,13 +53,13 @@ pub struct Cosine {
     pub shear: f64,
     /// Logarithm of A.
     pub amplitude: f64,
-    /// A times the lobe's mean of (1 - v.h)^5.
+    /// B: A times the lobe's mean of (1 - v.h)^5.
     pub fresnel: f64,
     /// Root of the weighted mean square of the half spaces' differences.
     pub error: f64,
 }
 
-/// Numbers of a cell of a table: M^-1 [0][0], [0][2], [2][0] and [2][2], A and the Fresnel term. See [`Cosine::cell`].
+/// Numbers of a cell of a table: M^-1 [0][0], [0][2], [2][0] and [2][2], A, and B less what level facets would have. See [`Cosine::cell`].
 pub const NUMBERS: usize = 6;
 
 /// Rows and columns of the tables that shaders read.
@@ -88,6 +88,12 @@ struct HalfSpace {
     integral: f64,
 }
 
+/// (1 - m)^5: what all facets would add to f0 = 0 if they lay level. Schlick 1994, eq. 15.
+fn level(m: f64) -> f64 {
+    let c = 1.0 - m;
+    (c * c) * (c * c) * c
+}
+
 /// z to (sin(angle), 0, cos(angle)).
 fn turn(angle: f64) -> DMat3 {
     let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
@@ -114,7 +120,8 @@ impl Cosine {
     /// M^-1 is taken in the frame around the mirrored view, whose direction the shader knows exactly, and its middle number is made 1, since a map's
     /// length is nothing to directions. What is left is divided by what it vanishes with: the third row by alpha, the two numbers that mix
     /// x and z by alpha sin(theta), and the two others by alpha + cos(theta). A smooth surface's lobe is 2 alpha wide, and 2 alpha cos(theta) across; within
-    /// alpha of the horizon that ends. So the numbers are of the order 1 and smooth, and few cells do.
+    /// alpha of the horizon that ends. So the numbers are of the order 1 and smooth, and few cells do. B has taken
+    /// off it what facets that lie level would have: the columns of a smooth surface are too few for a fifth power.
     pub fn cell(&self, alpha: f64, theta: f64) -> [f64; NUMBERS] {
         let map = self.inverse() * turn(-theta);
         let scale = 1.0 / map.y_axis.y;
@@ -126,17 +133,18 @@ impl Cosine {
             map.x_axis.z * skew,
             map.z_axis.z * scale / (alpha * narrow),
             libm::exp(self.amplitude),
-            self.fresnel,
+            self.fresnel - libm::exp(self.amplitude) * level(libm::cos(theta)),
         ]
     }
 
-    /// [`Self::cell`] undone: M^-1 for offsets in the frame of tangent, bitangent and normal, and A.
-    pub fn of_cell(cell: &[f64; NUMBERS], alpha: f64, theta: f64) -> (DMat3, f64) {
+    /// [`Self::cell`] undone: M^-1 for offsets in the frame of tangent, bitangent and normal, A and B.
+    pub fn of_cell(cell: &[f64; NUMBERS], alpha: f64, theta: f64) -> (DMat3, f64, f64) {
         let skew = alpha * libm::sin(theta);
         let narrow = libm::cos(theta) + alpha;
         let x = DVec3::new(cell[0] * narrow, 0.0, cell[2] * skew);
         let z = DVec3::new(cell[1] * skew, 0.0, cell[3] * alpha * narrow);
-        (DMat3::from_cols(x, DVec3::Y, z) * turn(-theta).transpose(), cell[4])
+        let grazing = cell[5] + cell[4] * level(libm::cos(theta));
+        (DMat3::from_cols(x, DVec3::Y, z) * turn(-theta).transpose(), cell[4], grazing)
     }
 
     const PARAMETERS: usize = 5;
@@ -387,8 +395,8 @@ pub fn table(lobe: Lobe, side: usize) -> Vec<f32> {
     numbers
 }
 
-/// M^-1 and A from a table, interpolated linearly between four cells.
-pub fn look_up(table: &[f32], side: usize, alpha: f64, cosine: f64) -> (DMat3, f64) {
+/// M^-1, A and B from a table, interpolated linearly between four cells.
+pub fn look_up(table: &[f32], side: usize, alpha: f64, cosine: f64) -> (DMat3, f64, f64) {
     let last = (side - 1) as f64;
     let alpha = alpha.clamp(SMOOTHEST, 1.0);
     let m = cosine.clamp(0.0, 1.0);
