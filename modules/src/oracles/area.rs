@@ -125,3 +125,69 @@ pub fn tube(c: DVec3, along: DVec3, length: f64, radius: f64, normal: DVec3, cap
 pub fn luminance(luminance: f64, flux: f64, area: f64) -> f64 {
     luminance + flux / (PI * area)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn near(got: f64, expected: f64, relative: f64) {
+        assert!((got - expected).abs() <= relative * expected.abs().max(1e-12), "{got} is not {expected}");
+    }
+
+    fn at(degrees: f64, distance: f64) -> DVec3 {
+        let angle = degrees.to_radians();
+        DVec3::new(angle.sin(), 0.0, angle.cos()) * distance
+    }
+
+    fn square(c: DVec3, direction: DVec3, size: (f64, f64)) -> f64 {
+        let (x, y) = (size.0 / 2.0, size.1 / 2.0);
+        let axes = plane_axes(direction, DVec3::X);
+        flat(c, axes, &[(-x, -y), (x, -y), (x, y), (-x, y)], DVec3::Z, false)
+    }
+
+    /// Catches an edge that is left out, a wrong factor, a clip at the wrong side, digits lost by small and thin lights.
+    #[test]
+    fn polygons() {
+        near(polygon(&[DVec3::X, DVec3::Y, DVec3::Z], DVec3::Z), 0.25, 1e-14);
+        near(square(DVec3::Z, -DVec3::Z, (1.0, 1.0)), 0.239_456_470_461, 1e-11);
+        near(square(DVec3::Z * 1e-4, -DVec3::Z, (1.0, 1.0)), 0.999_999_967_268, 1e-11);
+        near(square(DVec3::Z * 100.0, -DVec3::Z, (1e-3, 1e-3)), 3.183_098_861_73e-11, 1e-6);
+        near(square(DVec3::Z, -DVec3::Z, (1.0, 1e-7)), 2.749_075_72e-8, 1e-7);
+        let axes = plane_axes(-DVec3::X, DVec3::Y);
+        let wall = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        near(flat(DVec3::X, axes, &wall, DVec3::Z, false), 0.111_468_394_005, 1e-11);
+        let turned = |degrees: f64| {
+            let c = at(degrees, 1.0);
+            let c = DVec3::new(0.0, -c.x, c.z);
+            square(c, -c, (2.0, 2.0))
+        };
+        near(turned(60.0), 0.289_365_194, 1e-8);
+        near(turned(100.0), 0.067_873_221, 1e-8);
+        near(square(-DVec3::Z, DVec3::Z, (1.0, 1.0)), 0.0, 0.0);
+        near(square(DVec3::Z, DVec3::Z, (1.0, 1.0)), 0.0, 0.0);
+    }
+
+    /// Catches a rim at the wrong place, a chord taken for its arc, the horizon's part of the outline left out.
+    #[test]
+    fn curved_shapes() {
+        near(sphere(at(80.0, 2.0), 1.0, DVec3::Z), 0.054_695_816, 2e-8);
+        near(sphere(at(90.0, 2.0), 1.0, DVec3::Z), 0.028_834_443, 2e-8);
+        near(sphere(at(100.0, 2.0), 1.0, DVec3::Z), 0.011_283_772, 5e-8);
+        near(sphere(at(90.0, 100.0), 1.0, DVec3::Z), 2.122_129_57e-7, 1e-7);
+        near(sphere(at(120.0, 1.0), 0.999, DVec3::Z), 0.225_855_213, 1e-7);
+        near(sphere(at(120.0, 1.0), 1.5, DVec3::Z), 0.25, 1e-12);
+        near(disk(DVec3::Z, -DVec3::Z, 1.0, DVec3::Z, false), 0.5, 1e-9);
+        near(disk(DVec3::new(2.0, 0.0, 1.0), -DVec3::Z, 1.0, DVec3::Z, false), 0.052_786_404_5, 1e-9);
+        near(tube(DVec3::Z, DVec3::X, 1.0, 1e-6, DVec3::Z, false), 0.549_815_144e-6, 1e-6);
+        near(tube(DVec3::Z, DVec3::X, 1e6, 1e-3, DVec3::Z, false), 1e-3, 1e-6);
+        near(tube(DVec3::Z, DVec3::Z, 1.0, 0.5, DVec3::Z, true), 0.5, 1e-9);
+        near(tube(DVec3::Z, DVec3::Z, 1.0, 0.5, DVec3::Z, false), 0.0, 0.0);
+    }
+
+    /// Catches the flux over the area instead of over pi times the area.
+    #[test]
+    fn flux() {
+        near(luminance(0.0, 800.0, 4.0 * PI * 0.05 * 0.05), 8105.694_69, 1e-8);
+    }
+}
