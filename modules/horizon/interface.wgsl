@@ -208,24 +208,24 @@ fn disk_factor(c: vec3f, axis: vec3f, radius: f32, n: vec3f) -> f32 {
     return diagonal_cone_factor(vec3f(diagonal[0][0], diagonal[1][1], diagonal[2][2]), axes, up, vec3f(0.0, 0.0, 1.0));
 }
 
-/// What the edge of an outline from p to p + d gives to 2 pi times its form factor (Lambert 1760; Baum et al. 1989): its part above the
+/// What the edge of an outline from p to q = p + d gives to 2 pi times its form factor (Lambert 1760; Baum et al. 1989): its part above the
 /// horizon, and the way along the horizon between where the outline goes below it and where it comes back. `rim` remembers the first such
-/// place; it is 0 before the first edge. The sine of the edge's angle comes from p x d, which has its digits where p x q has none.
-fn edge_above(p: vec3f, d: vec3f, rim: ptr<function, vec2f>) -> f32 {
-    let end = p.z + d.z;
-    if p.z < 0.0 && end < 0.0 {
+/// place; it is 0 before the first edge. The sine of the edge's angle comes from p x d, which has its digits where p x q has none; but which side
+/// q is on must be what the next edge takes it for, so it is not computed anew.
+fn edge_above(p: vec3f, q: vec3f, d: vec3f, rim: ptr<function, vec2f>) -> f32 {
+    if p.z < 0.0 && q.z < 0.0 {
         return 0.0;
     }
     var start = p;
     var part = d;
     var along_horizon = 0.0;
     if p.z < 0.0 {
-        let t = -p.z / d.z;
+        let t = p.z / (p.z - q.z);
         start = vec3f(p.xy + d.xy * t, 0.0);
-        part = vec3f(d.xy * (1.0 - t), end);
+        part = vec3f(d.xy * (1.0 - t), q.z);
         along_horizon = crossing(start.xy, rim);
-    } else if end < 0.0 {
-        part = vec3f(d.xy * (p.z / -d.z), -p.z);
+    } else if q.z < 0.0 {
+        part = vec3f(d.xy * (p.z / (p.z - q.z)), -p.z);
         along_horizon = -crossing(start.xy + part.xy, rim);
     }
     let area = cross(start, part);
@@ -317,11 +317,15 @@ fn parallelogram_factor(c: vec3f, a: vec3f, b: vec3f) -> f32 {
     if volume == 0.0 {
         return 0.0;
     }
+    let p0 = c - a - b;
+    let p1 = c + a - b;
+    let p2 = c + a + b;
+    let p3 = c - a + b;
     var rim = vec2f(0.0);
-    var sum = edge_above(c - a - b, 2.0 * a, &rim);
-    sum += edge_above(c + a - b, 2.0 * b, &rim);
-    sum += edge_above(c + a + b, -2.0 * a, &rim);
-    sum += edge_above(c - a + b, -2.0 * b, &rim);
+    var sum = edge_above(p0, p1, 2.0 * a, &rim);
+    sum += edge_above(p1, p2, 2.0 * b, &rim);
+    sum += edge_above(p2, p3, -2.0 * a, &rim);
+    sum += edge_above(p3, p0, -2.0 * b, &rim);
     // Seen from its front the contour turns clockwise.
     return -sum * 0.159154943091895;
 }

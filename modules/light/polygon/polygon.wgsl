@@ -164,11 +164,11 @@ fn far_factor(i: u32, c: vec3f, a: vec3f, b: vec3f) -> f32 {
         let q = p[k];
         let next = p[select(k + 1u, 0u, k + 1u == count)];
         let height = c.z + a.z * q.x + b.z * q.y;
-        let rise = a.z * (next.x - q.x) + b.z * (next.y - q.y);
+        let next_height = c.z + a.z * next.x + b.z * next.y;
         var at = array<vec2f, 2>(q, q);
         var some = select(0u, 1u, height >= 0.0);
-        if (height >= 0.0) != (height + rise >= 0.0) {
-            at[some] = q + (next - q) * (-height / rise);
+        if (height >= 0.0) != (next_height >= 0.0) {
+            at[some] = q + (next - q) * (height / (height - next_height));
             some++;
         }
         for (var which = 0u; which < some; which++) {
@@ -207,10 +207,13 @@ fn shape_form_factor(i: u32, origin: vec3f, local: mat3x3f) -> f32 {
     } else if volume != 0.0 {
         var rim = vec2f(0.0);
         var q = p[count - 1u];
+        var at = c + a * q.x + b * q.y;
         for (var k = 0u; k < count; k++) {
             let step = p[k] - q;
-            factor -= edge_above(c + a * q.x + b * q.y, a * step.x + b * step.y, &rim);
+            let next = c + a * p[k].x + b * p[k].y;
+            factor -= edge_above(at, next, a * step.x + b * step.y, &rim);
             q = p[k];
+            at = next;
         }
         factor *= 0.159154943091895;
     }

@@ -138,16 +138,44 @@ fn line_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, t: f
     return width * segment_integral(local * (c + out_at(frame, t) * r), local * (frame[2] * (0.5 * instances[i].length)));
 }
 
+/// The part of -last < t < last where some of the tube's lines are above the horizon, where that is one part: beyond it the integrand would have a bend.
+/// In t the height of a line's higher end is a quadratic over 1 + t^2; `top` is that of the axis, `out` and `aside` are those of frame[0] and
+/// frame[1], times the radius.
+fn part_above(top: f32, out: f32, aside: f32, last: f32) -> vec2f {
+    let a = top - out;
+    let c = top + out;
+    let square = aside * aside - a * c;
+    if square <= 0.0 {
+        return vec2f(-last, last);
+    }
+    let q = -(aside + select(-1.0, 1.0, aside >= 0.0) * sqrt(square));
+    let r1 = q / select(a, 1e-30, abs(a) < 1e-30);
+    let r2 = c / select(q, 1e-30, abs(q) < 1e-30);
+    let low = min(r1, r2);
+    let high = max(r1, r2);
+    if a < 0.0 {
+        return vec2f(clamp(low, -last, last), clamp(high, -last, last));
+    }
+    return vec2f(select(-last, high, low < -last && high > -last && high < last), select(last, low, high > last && low < last && low > -last));
+}
+
 /// The side of a thin tube: lines along it, each integrated exactly, and across them Gauss and Legendre's eight points, which are off by 4e-5.
 /// No terms cancel, however thin it is.
 fn thin_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, last: f32) -> f32 {
     let x = array<f32, 4>(0.1834346425, 0.5255324099, 0.7966664774, 0.9602898565);
     let w = array<f32, 4>(0.3626837834, 0.3137066459, 0.2223810345, 0.1012285363);
+    let half = 0.5 * instances[i].length;
+    let heights = vec3f((local * frame[0]).z, (local * frame[1]).z, (local * frame[2]).z);
+    let r = instances[i].radius;
+    let part = part_above((local * c).z + abs(heights.z) * half, r * heights.x, r * heights.y, last);
+    let middle = 0.5 * (part.x + part.y);
+    let wide = 0.5 * (part.y - part.x);
     var sum = 0.0;
     for (var k = 0; k < 4; k++) {
-        sum += w[k] * (line_factor(i, frame, c, away, local, last * x[k]) + line_factor(i, frame, c, away, local, -last * x[k]));
+        let before = line_factor(i, frame, c, away, local, middle - wide * x[k]);
+        sum += w[k] * (before + line_factor(i, frame, c, away, local, middle + wide * x[k]));
     }
-    return sum * last * abs(determinant(local)) * 0.5 * instances[i].length * INV_PI;
+    return sum * wide * abs(determinant(local)) * half * INV_PI;
 }
 
 /// The side of a thick tube by its outline: two lines, and the arcs of the ends, each in twelve chords. A chord over the angle delta loses delta^2 / 12 of
@@ -164,11 +192,11 @@ fn outline_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, l
         let delta = last / (3.0 + 3.0 * t * t);
         let out = select(1.0, 1.0 + delta * delta / 12.0, step > 0u && step < 12u);
         let next = local * (c + select(half, -half, is_far) + out_at(frame, t) * (out * instances[i].radius));
-        sum += edge_above(at, next - at, &rim);
+        sum += edge_above(at, next, next - at, &rim);
         at = next;
     }
     let first = local * (c + half + out_at(frame, -last) * instances[i].radius);
-    sum += edge_above(at, first - at, &rim);
+    sum += edge_above(at, first, first - at, &rim);
     return abs(sum) * 0.159154943091895;
 }
 

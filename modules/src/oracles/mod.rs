@@ -9,6 +9,7 @@
 //! what its modules approximate.
 
 pub mod albedo;
+pub mod area;
 pub mod cosines;
 pub mod display;
 pub mod lights;
