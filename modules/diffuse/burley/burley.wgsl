@@ -5,9 +5,9 @@ fn diffuse(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     if n_dot_v <= 0.0 || n_dot_l <= 0.0 {
         return vec3f(0.0);
     }
-    // 2 cos^2 of half the angle between v and l: |v + l|^2 / 2. It takes roughness, not its square.
+    // 2 cos^2 of half the angle between v and l: |v + l|^2 / 2.
     let sum = v + l;
-    let at_grazing = 0.5 + sqrt(s.alpha) * 0.5 * dot(sum, sum);
+    let at_grazing = 0.5 + s.diffuse_roughness * 0.5 * dot(sum, sum);
     return s.diffuse * (INV_PI * toward(at_grazing, n_dot_v) * toward(at_grazing, n_dot_l));
 }
 

@@ -11,7 +11,7 @@ fn diffuse(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     if n_dot_v <= 0.0 || n_dot_l <= 0.0 {
         return vec3f(0.0);
     }
-    let r = sqrt(s.alpha);
+    let r = s.diffuse_roughness;
     let scale = 1.0 / (1.0 + LOSS * r);
     let once = scale * shape(r, n_dot_v, n_dot_l, v - n_dot_v * s.normal, l - n_dot_l * s.normal);
 
