@@ -27,5 +27,7 @@ fn tangent_at(at: Fragment, normal: vec3f) -> vec3f {
 fn turned_tangent(at: Fragment, normal: vec3f, angle: f32) -> vec3f {
     let tangent = tangent_at(at, normal);
     let side = select(1.0, at.tangent.w, at.tangent.w != 0.0);
-    return tangent * cos(angle) + cross(normal, tangent) * (side * sin(angle));
+    // Of angles beyond pi WGSL promises no sine.
+    let a = angle - 2.0 * PI * round(angle / (2.0 * PI));
+    return tangent * cos(a) + cross(normal, tangent) * (side * sin(a));
 }

@@ -27,7 +27,7 @@ fn surface(at: Fragment) -> Surface {
     s.coat_normal = coat_perturb(at.normal, at);
     // The largest channel is the weight; the floor keeps black from 0 / 0.
     s.fuzz = max(fuzz_color.r, max(fuzz_color.g, fuzz_color.b));
-    s.fuzz_color = fuzz_color / max(s.fuzz, 1e-6);
+    s.fuzz_color = fuzz_color / max(s.fuzz, 1e-30);
     s.fuzz_roughness = fuzz_roughness_modulate(vec4f(params.fuzz_roughness), at).a;
     return s;
 }

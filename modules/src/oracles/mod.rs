@@ -8,6 +8,7 @@
 //! ([`TRUTHS`](self) of that file, found by the build script as the modules are). A category's folder may have one for
 //! what its modules approximate.
 
+pub mod appearance;
 pub mod display;
 pub mod lights;
 pub mod quadrature;
