@@ -7,11 +7,6 @@ fn alpha_of_roughness(roughness: f32) -> f32 {
     return max(roughness * roughness, MIN_ALPHA);
 }
 
-/// Perceptual roughness from the width of a lobe.
-fn roughness_of_alpha(alpha: f32) -> f32 {
-    return sqrt(alpha);
-}
-
 /// Perceptual roughness from glossiness: 1 - glossiness (Khronos Group 2017, KHR_materials_pbrSpecularGlossiness).
 fn roughness_of_glossiness(glossiness: f32) -> f32 {
     return 1.0 - glossiness;
@@ -22,11 +17,6 @@ fn roughness_of_glossiness(glossiness: f32) -> f32 {
 fn exponent_of_alpha(alpha: f32) -> f32 {
     let a = max(alpha, 1e-12);
     return max(2.0 * (1.0 - a) * (1.0 + a) / (a * a), 0.0);
-}
-
-/// Width of a lobe from the exponent of a power of a cosine, at least 1e-4.
-fn alpha_of_exponent(exponent: f32) -> f32 {
-    return max(sqrt(2.0 / (max(exponent, 0.0) + 2.0)), MIN_ALPHA);
 }
 
 /// Widths along the tangent and across it, from roughness and a strength in [0, 1] that widens the lobe along the tangent up to 1

@@ -147,7 +147,7 @@ fn all_extensions_at_once() {
     }
 
     let mut renderer = Renderer::new(&gpu(), catalog());
-    let mut draw = |frame: &Frame| renderer.render(frame).unwrap().read_hdr().unwrap();
+    let mut draw = |frame: &Frame| renderer.render(frame).unwrap().read_hdr(&gpu()).unwrap();
     let (layered, plain) = (draw(&frame), draw(&derived(&[], "\"forward\"", "").unwrap()));
     let light = |texels: &[[f32; 4]]| texels.iter().map(|t| t[0]).sum::<f32>();
     assert!(layered.iter().flatten().all(|x| x.is_finite()));
