@@ -5,6 +5,7 @@ fn bare_surface(at: Fragment, normal: vec3f) -> Surface {
     s.normal = normal;
     s.geometric_normal = at.normal;
     s.f90 = vec3f(1.0);
+    s.f82 = vec3f(1.0);
     s.alpha = 1.0;
     s.tangent = tangent_at(at, normal);
     s.widths = vec2f(1.0);

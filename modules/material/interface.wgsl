@@ -27,6 +27,8 @@ struct Surface {
     f0: vec3f,
     /// Reflectance at the horizon, linear Rec.709 in [0, 1]: 1, unless a material weakens its reflection.
     f90: vec3f,
+    /// Factor of the reflectance at 82 degrees, where metals have their colour's edge, linear Rec.709 in [0, 1]: 1 is Schlick's law.
+    f82: vec3f,
     /// GGX width: perceptual roughness squared, in (0, 1].
     alpha: f32,
     /// Unit length, in the surface: along it an anisotropic surface has its first width.
@@ -65,6 +67,7 @@ fn surface(at: Fragment) -> Surface {
     s.diffuse_roughness = 1.0;
     s.f0 = vec3f(0.04);
     s.f90 = vec3f(1.0);
+    s.f82 = vec3f(1.0);
     s.alpha = 1.0;
     s.tangent = frame_of(at.normal)[0];
     s.widths = vec2f(1.0);

@@ -5,6 +5,7 @@ fn coated(s: Surface) -> Surface {
     c.alpha = s.coat_alpha;
     c.f0 = vec3f(f0_of_ior(s.coat_ior));
     c.f90 = vec3f(1.0);
+    c.f82 = vec3f(1.0);
     return c;
 }
 

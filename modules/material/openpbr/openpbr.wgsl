@@ -16,6 +16,7 @@ fn surface(at: Fragment) -> Surface {
     // Below a reflectance of 2 % a boundary hardly has a horizon: without the factor, specular_weight 0 would leave a bright rim.
     let at_horizon = params.specular_color * min(50.0 * reflectance, 1.0);
     s.f90 = mix(at_horizon, vec3f(min(params.specular_weight, 1.0)), metalness);
+    s.f82 = mix(vec3f(1.0), params.specular_color, metalness);
     s.alpha = alpha_of_roughness(roughness);
     s.widths = widths_of_anisotropy(roughness, params.specular_roughness_anisotropy);
     s.emission = emission_modulate(vec4f(params.emission_color, 1.0), at).rgb * params.emission_luminance;

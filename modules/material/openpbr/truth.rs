@@ -29,6 +29,7 @@ fn surface(at: &At) -> Vec<f64> {
         diffuse_roughness: at.param("base_diffuse_roughness"),
         f0: (tint * reflectance).lerp(color * metal, metalness),
         f90: (tint * (50.0 * reflectance).min(1.0)).lerp(DVec3::splat(metal), metalness),
+        f82: DVec3::ONE.lerp(tint, metalness),
         alpha: alpha(roughness),
         widths: DVec2::new(along, q * along).max(DVec2::splat(smallest_alpha())),
         emission: at.param_vector("emission_color") * at.param("emission_luminance"),

@@ -15,6 +15,7 @@ pub struct Appearance {
     pub diffuse_roughness: f64,
     pub f0: DVec3,
     pub f90: DVec3,
+    pub f82: DVec3,
     pub alpha: f64,
     pub tangent: DVec3,
     pub widths: DVec2,
@@ -44,6 +45,7 @@ impl Appearance {
             diffuse_roughness: 0.0,
             f0: DVec3::ZERO,
             f90: DVec3::ONE,
+            f82: DVec3::ONE,
             alpha: 1.0,
             tangent: (along - normal * normal.dot(along)).normalize(),
             widths: DVec2::ONE,
@@ -69,6 +71,7 @@ impl Appearance {
         all.push(self.diffuse_roughness);
         all.extend(self.f0.to_array());
         all.extend(self.f90.to_array());
+        all.extend(self.f82.to_array());
         all.push(self.alpha);
         all.extend(self.tangent.to_array());
         all.extend(self.widths.to_array());
