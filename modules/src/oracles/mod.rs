@@ -10,6 +10,7 @@
 
 pub mod display;
 pub mod lights;
+pub mod lobes;
 pub mod quadrature;
 pub mod reflection;
 pub mod shadows;
