@@ -388,6 +388,7 @@ fn roughness_is_converted_in_one_place() {
         "1.0 - params.glossiness",
         "MIN_ALPHA",
         "(1.0 + alpha) / (alpha * alpha)",
+        "(1.0 + a) / (a * a)",
     ];
     let conversions = |line: &str| forms.iter().any(|form| line.contains(form));
     let mut wrong = Vec::new();

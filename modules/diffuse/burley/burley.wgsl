@@ -13,7 +13,5 @@ fn diffuse(s: Surface, v: vec3f, l: vec3f) -> vec3f {
 
 /// From 1 along the normal to `at_grazing` at the horizon, by Schlick's fifth power.
 fn toward(at_grazing: f32, cosine: f32) -> f32 {
-    let x = max(1.0 - cosine, 0.0);
-    let x2 = x * x;
-    return 1.0 + (at_grazing - 1.0) * (x2 * x2 * x);
+    return 1.0 + (at_grazing - 1.0) * schlick_weight(cosine);
 }

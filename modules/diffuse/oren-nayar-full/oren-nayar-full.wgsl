@@ -52,12 +52,3 @@ fn turn(sine: f32, cosine: f32) -> f32 {
     let angle = arcsine(min(sine, cosine)) * (2.0 * INV_PI);
     return select(1.0 - angle, angle, sine < cosine);
 }
-
-/// Inverse sine, relative error 1e-7, for x in [0, 0.71]: a polynomial in x^2 over half the range, since the built-in `acos` may be off by
-/// 7e-5 (WGSL, floating point accuracy).
-fn arcsine(x: f32) -> f32 {
-    let z = x * x;
-    let p = ((((((0.114312947 * z - 0.0974846855) * z + 0.0800461993) * z + 0.0154393734) * z + 0.0466496646) * z + 0.0748744085) * z
-        + 0.166669294);
-    return x + x * z * p;
-}

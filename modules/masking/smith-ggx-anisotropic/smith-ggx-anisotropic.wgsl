@@ -11,6 +11,6 @@ fn masking(s: Surface, v: vec3f, l: vec3f, h: vec3f) -> f32 {
 
 /// sqrt((ax d.t)^2 + (ay d.b)^2 + (d.n)^2): (2 Lambda + 1) n.d.
 fn projected(s: Surface, d: vec3f) -> f32 {
-    let across = vec2f(dot(s.tangent, d), dot(cross(s.normal, s.tangent), d));
-    return length(vec3f(s.widths * across, dot(s.normal, d)));
+    let local = to_local(s, d);
+    return length(vec3f(s.widths * local.xy, local.z));
 }

@@ -11,6 +11,7 @@
 pub mod appearance;
 pub mod display;
 pub mod lights;
+pub mod lobes;
 pub mod quadrature;
 pub mod reflection;
 pub mod shadows;
