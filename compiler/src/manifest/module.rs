@@ -134,6 +134,14 @@ pub struct Param {
     pub role: Option<String>,
 }
 
+impl Param {
+    /// The slot of which the parameter, by its role `filled:SLOT`, says whether anything stands in it. Nobody sets such a parameter: a branch on it
+    /// leaves no trace of what an empty slot would have done.
+    pub fn filled_slot(&self) -> Option<&str> {
+        self.role.as_deref()?.strip_prefix("filled:")
+    }
+}
+
 /// Type of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize)]
 pub enum ParamType {
