@@ -134,7 +134,7 @@ fn place(step: usize, tilted: bool) -> Place {
 fn upper(step: usize, at: usize) -> DVec3 {
     let (a, b) = (fraction(step, STEPS[at]), fraction(step, STEPS[at + 1]));
     let most = STEEPEST.to_radians();
-    let theta = if step % 2 == 0 {
+    let theta = if step.is_multiple_of(2) {
         f64::acos(1.0 - a * (1.0 - most.cos()))
     } else {
         80f64.to_radians() + a * (most - 80f64.to_radians())
@@ -156,7 +156,7 @@ fn mirrored(v: DVec3, h: DVec3) -> DVec3 {
 fn stratified(step: usize, tilted: bool, least: f64) -> Json {
     let number = |at: usize| fraction(step, STEPS[at]);
     let alpha = least.powf(number(3));
-    let widths = if step % 3 == 0 {
+    let widths = if step.is_multiple_of(3) {
         [least.powf(number(3)), least.powf(number(4))]
     } else {
         [alpha; 2]
@@ -240,7 +240,7 @@ fn sets(module: &Module) -> Vec<Json> {
         for (a, b) in [(0.0, 1.0), (1.0, 0.0), (0.25, 0.6), (0.7, 0.3)] {
             sets.push(of(&|param, index, x| {
                 let (low, high) = param.range.unwrap_or((x, x));
-                low + (high - low) * if index % 2 == 0 { a } else { b }
+                low + (high - low) * if index.is_multiple_of(2) { a } else { b }
             }));
         }
     }
@@ -364,8 +364,7 @@ impl Subject {
                 let mut moved = None;
                 for (i, (t, g)) in truth.iter().zip(got).enumerate() {
                     let size = t.abs().max(FLOOR);
-                    let error = (g - t).abs() / size;
-                    // What is no number is not below anything.
+                    let error = if g.is_finite() { (g - t).abs() / size } else { f64::INFINITY };
                     if error <= worst.error && error <= worst.left && error <= BOUND {
                         continue;
                     }
@@ -375,9 +374,9 @@ impl Subject {
                     let bound = if turned && self.is_at_the_rim(row) { TURNED_BOUND } else { BOUND };
                     let seen = if jumps { left } else { error };
                     let over = if jumps { left / BOUND } else { (error / bound).max(left / BOUND) };
-                    worst.left = if left <= worst.left { worst.left } else { left };
-                    worst.error = if jumps || error <= worst.error { worst.error } else { error };
-                    if !(over <= 1.0) && !(seen <= worst.beyond) {
+                    worst.left = worst.left.max(left);
+                    worst.error = if jumps { worst.error } else { worst.error.max(error) };
+                    if over > 1.0 && seen > worst.beyond {
                         worst.beyond = seen;
                         worst.at = format!("{g:e} for {t:e} at {row}");
                     }
