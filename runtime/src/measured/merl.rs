@@ -68,12 +68,12 @@ impl Merl {
         for (index, chunk) in bytes[HEADER..].chunks_exact(8).enumerate() {
             let (plane, cell) = (index / cells, index % cells);
             // Chunks of 8 are 8 bytes long.
-            let number = f64::from_le_bytes(chunk.try_into().unwrap_or_default()) * SCALES[plane];
-            let value = number as f32;
+            let number = f64::from_le_bytes(chunk.try_into().unwrap_or_default());
+            let value = (number * SCALES[plane]) as f32;
             if !value.is_finite() {
                 let at = HEADER + index * 8;
                 let expected = format!("a number that f32 can hold, {} of cell {cell}", PLANES[plane]);
-                return Err(Damaged::new(at, expected, format!("{}", number / SCALES[plane])));
+                return Err(Damaged::new(at, expected, format!("{number:?}")));
             }
             values[cell][plane] = value;
         }
@@ -145,23 +145,33 @@ impl Merl {
         samples
     }
 
-    /// The table for a shader: the three sizes, then red, green and blue of each cell, in the file's order. An invalid cell has the value of the nearest
-    /// valid one with the same theta_h and phi_d and a smaller theta_d: a pair of directions goes below the horizon as theta_d grows, and so
-    /// interpolation at the horizon is not with black. Where there is none, it is 0.
+    /// The table for a shader, which stands at points and not in cells: theta_h and theta_d have a point at 0 before those in the middles of the cells.
+    /// First the three sizes, without those points, then red, green and blue of each point, in the file's order.
+    ///
+    /// An invalid cell has the value of the nearest valid one with the same theta_h and phi_d and a smaller theta_d: a pair of directions goes
+    /// below the horizon as theta_d grows, and so interpolation at the horizon is not with black. Where there is none, it is 0. At an angle of 0
+    /// phi_d means nothing: the mean over it of the nearest cells stands there, so that what is interpolated has no jump.
     pub fn floats(&self) -> Vec<f32> {
-        let [_, d, p] = self.sizes;
+        let [h, d, p] = self.sizes;
+        let mut filled = self.values.clone();
+        for cell in 0..filled.len() {
+            if !is_valid(&filled[cell]) {
+                // What stands p cells before is filled already.
+                filled[cell] = if cell / p % d > 0 { filled[cell - p] } else { [0.0; 3] };
+            }
+        }
+        let mean = |row: &[[f32; 3]]| -> [f32; 3] {
+            std::array::from_fn(|channel| (row.iter().map(|value| f64::from(value[channel])).sum::<f64>() / row.len() as f64) as f32)
+        };
         let mut floats: Vec<f32> = self.sizes.iter().map(|size| *size as f32).collect();
-        floats.reserve(self.values.len() * 3);
-        for (cell, value) in self.values.iter().enumerate() {
-            let above = cell / p % d > 0;
-            if is_valid(value) {
-                floats.extend(value);
-            } else if above {
-                // What stands p cells before, which is filled already.
-                let from = 3 + (cell - p) * 3;
-                floats.extend_from_within(from..from + 3);
-            } else {
-                floats.extend([0.0; 3]);
+        floats.reserve((h + 1) * (d + 1) * p * 3);
+        for i in 0..=h {
+            for j in 0..=d {
+                let row = &filled[(i.saturating_sub(1) * d + j.saturating_sub(1)) * p..][..p];
+                let mean = (i == 0 || j == 0).then(|| mean(row));
+                for value in row {
+                    floats.extend(mean.unwrap_or(*value));
+                }
             }
         }
         floats

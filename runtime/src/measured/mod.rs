@@ -13,14 +13,19 @@
 
 mod merl;
 mod rgl;
+mod tabulate;
 mod tensor;
 mod warp;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 pub use merl::Merl;
 pub use rgl::Rgl;
+pub use tabulate::{Facets, tabulate};
 pub use tensor::{Field, Numbers, write as write_tensors};
+
+/// Turns by this angle never repeat, and fill the circle evenly from the first ones on: pi (3 - sqrt 5).
+const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
 /// A file is not what it should be. Said is the first place where that shows.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -95,11 +100,20 @@ impl Measured {
 
     /// At most so many of the measured values, where no direction is farther than `most` radians from the normal: spread evenly over the table's
     /// own grid, always the same ones. What the file marks as invalid is not among them.
+    ///
+    /// Those of an isotropic table are turned about the normal, each otherwise: a model with a direction of its own finds none in it.
     pub fn samples(&self, count: usize, most: f64) -> Vec<Sample> {
-        match self {
-            Self::Merl(table) => table.samples(count, most),
-            Self::Rgl(table) => table.samples(count, most),
+        let (mut samples, is_isotropic) = match self {
+            Self::Merl(table) => (table.samples(count, most), true),
+            Self::Rgl(table) => (table.samples(count, most), table.is_isotropic()),
+        };
+        if is_isotropic {
+            for (index, sample) in samples.iter_mut().enumerate() {
+                let turn = DQuat::from_rotation_z(index as f64 * GOLDEN_ANGLE);
+                (sample.v, sample.l) = (turn * sample.v, turn * sample.l);
+            }
         }
+        samples
     }
 }
 

@@ -47,9 +47,8 @@ pub struct Rgl {
     ndf: Grid,
     sigma: Grid,
     vndf: Warp,
-    luminance: Warp,
-    /// Values on the grid of `luminance`: a slice for each azimuth, elevation and channel.
-    rgb: Vec<f32>,
+    /// A slice for each azimuth, elevation and channel.
+    rgb: Grid,
 }
 
 impl Rgl {
@@ -76,14 +75,17 @@ impl Rgl {
         let phi_i = angles(need("phi_i")?, [-TAU, TAU])?;
         let theta_i = angles(need("theta_i")?, [0.0, FRAC_PI_2 + 1e-4])?;
         let directions = [phi_i.len(), theta_i.len()];
-        let (vndf, luminance, rgb) = (need("vndf")?, need("luminance")?, need("rgb")?);
-        let vndf = warp(vndf, directions)?;
-        let luminance = warp(luminance, directions)?;
-        let shape = [directions[0], directions[1], 3, luminance.height, luminance.width];
-        if rgb.shape != shape {
-            let expected = format!("`rgb` of {}, as `luminance` is", sizes(&shape));
-            return Err(Damaged::new(rgb.at, expected, sizes(&rgb.shape)));
-        }
+        let vndf = warp(need("vndf")?, directions)?;
+        let rgb = need("rgb")?;
+        let (width, height) = match rgb.shape[..] {
+            [p, t, 3, height, width] if [p, t] == directions => (width, height),
+            _ => {
+                let [p, t] = directions;
+                let expected = format!("`rgb` of {p} x {t} x 3 x height x width, as `phi_i` and `theta_i` are");
+                return Err(Damaged::new(rgb.at, expected, sizes(&rgb.shape)));
+            }
+        };
+        sides(rgb, [width, height])?;
         let has_jacobian = match find("jacobian") {
             None => true,
             Some(field) => field.bytes()?.first().is_some_and(|flag| *flag != 0),
@@ -96,8 +98,11 @@ impl Rgl {
             ndf: grid(need("ndf")?)?,
             sigma: grid(need("sigma")?)?,
             vndf,
-            luminance,
-            rgb: rgb.floats()?,
+            rgb: Grid {
+                width,
+                height,
+                values: rgb.floats()?,
+            },
         })
     }
 
@@ -108,12 +113,12 @@ impl Rgl {
 
     /// How many azimuths and elevations of incident directions, and how many values along and across the square for each.
     pub fn sizes(&self) -> [usize; 4] {
-        [self.phi_i.len(), self.theta_i.len(), self.luminance.width, self.luminance.height]
+        [self.phi_i.len(), self.theta_i.len(), self.rgb.width, self.rgb.height]
     }
 
     /// See [`super::Measured::samples`].
     pub fn samples(&self, count: usize, most: f64) -> Vec<Sample> {
-        let (w, h) = (self.luminance.width, self.luminance.height);
+        let (w, h) = (self.rgb.width, self.rgb.height);
         let mut samples = Vec::new();
         // At the square's edges many values share a direction.
         let inner = [self.phi_i.len(), self.theta_i.len(), h.saturating_sub(2), w.saturating_sub(2)];
@@ -136,7 +141,7 @@ impl Rgl {
             let scale = if self.has_jacobian { self.ndf.at(m) / (4.0 * sigma) } else { 1.0 };
             let value = |channel: usize| {
                 let index = ((slice * 3 + channel) * h + y + 1) * w + x + 1;
-                f64::from(self.rgb[index]).max(0.0) * scale / l.z
+                f64::from(self.rgb.values[index]).max(0.0) * scale / l.z
             };
             samples.push(Sample {
                 v,
@@ -149,9 +154,8 @@ impl Rgl {
     }
 
     /// The table for a shader: sixteen numbers (azimuths, elevations, width and height of ndf, sigma, vndf and values, 1 for an isotropic table, the
-    /// symmetry, 1 for a table with D / (4 sigma), three times 0), azimuths, elevations, ndf, sigma, then of vndf and luminance the densities, the
-    /// conditional and the marginal distributions, and the values, slices of azimuth, elevation and channel. Negative values, colours out of
-    /// gamut, are 0.
+    /// symmetry, 1 for a table with D / (4 sigma), three times 0), azimuths, elevations, ndf, sigma, of vndf the densities, the conditional and the
+    /// marginal distributions, and the values, slices of azimuth, elevation and channel. Negative values, colours out of gamut, are 0.
     pub fn floats(&self) -> Vec<f32> {
         let flag = |on: bool| if on { 1.0 } else { 0.0 };
         let sizes = [
@@ -163,25 +167,24 @@ impl Rgl {
             self.sigma.height,
             self.vndf.width,
             self.vndf.height,
-            self.luminance.width,
-            self.luminance.height,
+            self.rgb.width,
+            self.rgb.height,
         ];
         let mut floats: Vec<f32> = sizes.iter().map(|size| *size as f32).collect();
         floats.extend([flag(self.is_isotropic()), self.symmetry as f32, flag(self.has_jacobian), 0.0, 0.0, 0.0]);
         for part in [&self.phi_i, &self.theta_i, &self.ndf.values, &self.sigma.values] {
             floats.extend(part);
         }
-        for warp in [&self.vndf, &self.luminance] {
-            for part in [&warp.values, &warp.conditional, &warp.marginal] {
-                floats.extend(part);
-            }
+        for part in [&self.vndf.values, &self.vndf.conditional, &self.vndf.marginal] {
+            floats.extend(part);
         }
-        floats.extend(self.rgb.iter().map(|x| x.max(0.0)));
+        floats.extend(self.rgb.values.iter().map(|x| x.max(0.0)));
         floats
     }
 }
 
-fn direction(theta: f64, phi: f64) -> DVec3 {
+/// The unit vector at these angles, rad.
+pub fn direction(theta: f64, phi: f64) -> DVec3 {
     DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
 }
 
@@ -253,12 +256,18 @@ fn warp(field: &Entry<'_>, directions: [usize; 2]) -> Result<Warp, Damaged> {
     })
 }
 
-/// Numbers from 0 on, on a grid with at least two points along each side and at most what a shader counts in floats.
-fn densities(field: &Entry<'_>, sides: [usize; 2]) -> Result<Vec<f32>, Damaged> {
-    if sides.iter().any(|side| !(2..=4096).contains(side)) {
-        let expected = format!("a grid of `{}` with 2 to 4096 points along each side", field.name);
-        return Err(Damaged::new(field.at, expected, sizes(&field.shape)));
+/// There is something to interpolate between, and a shader can count it in floats.
+fn sides(field: &Entry<'_>, size: [usize; 2]) -> Result<(), Damaged> {
+    if size.iter().all(|side| (2..=4096).contains(side)) {
+        return Ok(());
     }
+    let expected = format!("a grid of `{}` with 2 to 4096 points along each side", field.name);
+    Err(Damaged::new(field.at, expected, sizes(&field.shape)))
+}
+
+/// Numbers from 0 on, on a grid.
+fn densities(field: &Entry<'_>, size: [usize; 2]) -> Result<Vec<f32>, Damaged> {
+    sides(field, size)?;
     let values = field.floats()?;
     if let Some(index) = values.iter().position(|x| *x < 0.0) {
         let expected = format!("a number from 0 on in `{}`", field.name);

@@ -29,13 +29,16 @@ use shadewright_runtime::measured::Measured;
 use shadewright_runtime::probe::Probe;
 
 use crate::data::{Fit, Fits};
-use crate::measure::MeasureError;
+use crate::measure::{MeasureError, one_line};
 use compare::Comparison;
 use free::Variables;
 
 /// Farthest that a direction may be from the normal, degrees: beyond it measurements are extrapolated (Ngan et al. 2005, Experimental Analysis of BRDF
 /// Models, leave out the same).
 const MOST_DEGREES: f64 = 80.0;
+
+/// An RMS error as good as none: tables hold 32-bit numbers.
+const ROUNDING: f64 = 1e-6;
 
 /// `CATEGORY/CATEGORY.fit.ron` as written: how the category's models are held against a table.
 #[derive(Clone, Debug, Deserialize)]
@@ -167,7 +170,7 @@ pub fn fit(
         match model.and_then(|model| solve::best(&model, fits.fitted, options.cancel)) {
             Ok(found) => fits.rows.push(Fit {
                 label: label.clone(),
-                recipe: recipe.to_ron(),
+                recipe: one_line(recipe),
                 summary: root.manifest.summary.clone(),
                 ..found
             }),
@@ -179,17 +182,21 @@ pub fn fit(
             }
         }
     }
-    fits.rows.sort_by(|a, b| a.errors.rms.total_cmp(&b.errors.rms).then_with(|| a.label.cmp(&b.label)));
-    let beaten = |row: &Fit| {
-        let others = fits.rows.iter().map(|other| (other.errors.rms, other.executed.mean));
-        let (error, cost) = (row.errors.rms, row.executed.mean);
-        others.into_iter().any(|(e, c)| e <= error && c <= cost && (e < error || c < cost))
-    };
-    let dominated: Vec<bool> = fits.rows.iter().map(beaten).collect();
-    for (row, dominated) in fits.rows.iter_mut().zip(dominated) {
-        row.dominated = dominated;
-    }
+    rank(&mut fits.rows);
     Ok(fits)
+}
+
+/// Puts the best first, and marks what another beats. Errors that are the table's rounding are equal: among those the cheapest is best.
+fn rank(rows: &mut [Fit]) {
+    let place = |row: &Fit| (row.errors.rms.max(ROUNDING), row.executed.mean);
+    rows.sort_by(|a, b| {
+        let ((a_error, a_cost), (b_error, b_cost)) = (place(a), place(b));
+        a_error.total_cmp(&b_error).then(a_cost.total_cmp(&b_cost)).then_with(|| a.label.cmp(&b.label))
+    });
+    let places: Vec<(f64, f64)> = rows.iter().map(place).collect();
+    for (row, (error, cost)) in rows.iter_mut().zip(&places) {
+        row.dominated = places.iter().any(|(e, c)| e <= error && c <= cost && (e < error || c < cost));
+    }
 }
 
 fn all(catalog: &Catalog, subject: &Subject) -> IndexMap<String, Recipe> {

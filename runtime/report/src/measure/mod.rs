@@ -25,7 +25,7 @@ use serde_json::{Value as Json, json};
 use shadewright_compiler::Report;
 use shadewright_runtime::gpu::RuntimeError;
 
-pub(crate) use row::{Effort, Measured, OnDevice, configurations, key, mark_dominated, measure};
+pub(crate) use row::{Effort, Measured, OnDevice, configurations, key, mark_dominated, measure, one_line};
 pub(crate) use errors::statistics;
 pub(crate) use executed::executed;
 pub(crate) use sample::{Random, latin};

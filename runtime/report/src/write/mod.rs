@@ -15,7 +15,8 @@ mod tables;
 pub use drawing::pareto::dominated;
 pub use faults::{Fault, Kind, faults};
 pub use markdown::markdown;
-pub use text::replay;
+pub use number::number;
+pub use text::{parameters, replay};
 
 use crate::data::Report;
 
