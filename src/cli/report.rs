@@ -120,7 +120,10 @@ fn fitted(context: &Context, path: &Path, options: &Options) -> Result<report::R
                 progress: &|done, of, next| watch.at(done, of, next),
             },
         );
-        report.fits.push(made.map_err(|error| failure(error.into(), options))?);
+        report.fits.push(made.map_err(|error| match error {
+            MeasureError::Interrupted => Failure::Interrupted("nothing is written".to_owned()),
+            other => failure(other.into(), options),
+        })?);
     }
     watch.finish();
     Ok(report)
