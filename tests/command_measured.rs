@@ -47,12 +47,19 @@ fn fits_models_to_a_file() {
             markdown.to_str().unwrap(),
         ]);
         let lines: Vec<&str> = said.text().lines().collect();
-        assert!(lines[0].starts_with("brdf/microfacet: RMS ") && lines[0].contains("s.alpha 0.25"), "{}", said.text());
+        assert!(
+            lines[0].starts_with("brdf/microfacet: RMS ") && lines[0].contains("s.alpha 0.25"),
+            "{}",
+            said.text()
+        );
         assert_eq!(lines.len(), 4, "{}", said.text());
         assert!(lines[2].starts_with("lambert: RMS "), "{}", said.text());
         assert_eq!(lines[3], format!("3 rows: {}", out.join("report.html").display()));
         let files = names(&out);
-        assert!(files.contains(&"report.html".to_owned()) && files.contains(&"report.json".to_owned()), "{files:?}");
+        assert!(
+            files.contains(&"report.html".to_owned()) && files.contains(&"report.json".to_owned()),
+            "{files:?}"
+        );
         let text = std::fs::read_to_string(&markdown).unwrap();
         assert!(text.contains("| brdf/microfacet |"), "{text}");
         let mut json: serde_json::Value = serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap();
@@ -74,7 +81,8 @@ fn says_what_is_wrong() {
     let file = path.to_str().unwrap();
     let ran = run(&["report", "--measured", file]);
     assert_eq!(ran.status, 1);
-    let expected = format!("error[SW1106]: {file}: byte 1000: expected 73740 bytes for 16 x 12 x 16 cells of three channels, found 1000 bytes");
+    let expected =
+        format!("error[SW1106]: {file}: byte 1000: expected 73740 bytes for 16 x 12 x 16 cells of three channels, found 1000 bytes");
     assert_eq!(ran.err.trim(), expected);
     std::fs::write(&path, table()).unwrap();
     let ran = run(&["report", "--measured", file, "ggx", "-o", folder.path().to_str().unwrap()]);

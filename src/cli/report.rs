@@ -98,7 +98,8 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
 fn fitted(context: &Context, path: &Path, options: &Options) -> Result<report::Report, Failure> {
     let name = path.display().to_string();
     let bytes = input::bytes(path)?;
-    let table = Measured::read(&bytes).map_err(|error| Diagnostic::new(codes::MEASURED_DAMAGED, format!("{name}: {error}")))
+    let table = Measured::read(&bytes)
+        .map_err(|error| Diagnostic::new(codes::MEASURED_DAMAGED, format!("{name}: {error}")))
         .map_err(Report::from)?;
     let subjects = fit::subjects(&*context.library, &context.catalog)?;
     let mut models = IndexMap::new();
@@ -184,7 +185,7 @@ fn check(context: &Context, path: &Path, now: &Baseline) -> Result<(), Failure> 
 /// A line for each row with a fault, and where the page is.
 fn summary(report: &report::Report, options: &Options) -> String {
     let mut lines: Vec<String> = report.fits.iter().flat_map(fit_lines).collect();
-    let mut rows = report.fits.iter().map(|fits| fits.rows.len()).sum();
+    let mut rows: usize = report.fits.iter().map(|fits| fits.rows.len()).sum();
     for results in &report.experiments {
         for row in &results.rows {
             rows += 1;

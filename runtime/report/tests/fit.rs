@@ -68,7 +68,11 @@ fn assert_found(fit: &Fit, expected: &[(&str, &[f64])]) {
         let found = found.unwrap_or_else(|| panic!("no {name} in {:?}", fit.parameters));
         assert_eq!(found.values.len(), values.len());
         for (got, expected) in found.values.iter().zip(*values) {
-            assert!((got / expected - 1.0).abs() < 0.01, "{name}: {:?} instead of {values:?}", found.values);
+            assert!(
+                (got / expected - 1.0).abs() < 0.01,
+                "{name}: {:?} instead of {values:?}",
+                found.values
+            );
         }
     }
     assert_eq!(fit.parameters.len(), expected.len(), "{:?}", fit.parameters);
@@ -106,7 +110,11 @@ fn a_table_of_ward_is_recovered() {
     assert_eq!(best.label, "ward", "{:#?}", fits.rows);
     assert_found(
         best,
-        &[("s.diffuse", &[0.3, 0.2, 0.4]), ("s.f0", &[0.2, 0.1, 0.05]), ("s.widths", &[0.25, 0.25])],
+        &[
+            ("s.diffuse", &[0.3, 0.2, 0.4]),
+            ("s.f0", &[0.2, 0.1, 0.05]),
+            ("s.widths", &[0.25, 0.25]),
+        ],
     );
 }
 
@@ -114,7 +122,8 @@ fn a_table_of_ward_is_recovered() {
 #[test]
 fn a_table_of_lambert_is_recovered() {
     let surface = json!({"diffuse": [0.7, 0.35, 0.1]});
-    let fits = fitted(&merl(truth("brdf/lambert", surface, json!({}))), &["ward", "microfacet", "lambert"]).unwrap_or_else(|e| panic!("{e}"));
+    let fits =
+        fitted(&merl(truth("brdf/lambert", surface, json!({}))), &["ward", "microfacet", "lambert"]).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(fits.rows[0].label, "lambert", "{:#?}", fits.rows);
     assert_found(&fits.rows[0], &[("s.diffuse", &[0.7, 0.35, 0.1])]);
     assert!(fits.rows[1].dominated && fits.rows[2].dominated, "{:#?}", fits.rows);
@@ -151,10 +160,7 @@ fn a_table_along_the_lobe_is_recovered() {
     let table = Measured::Rgl(Rgl::read(&write_tensors(&fields)).expect("a table"));
     let fits = fitted(&table, &["microfacet", "ward"]).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(fits.rows[0].label, "microfacet", "{:#?}", fits.rows);
-    assert_found(
-        &fits.rows[0],
-        &[("s.diffuse", &[0.05; 3]), ("s.f0", &f0), ("s.alpha", &[alpha])],
-    );
+    assert_found(&fits.rows[0], &[("s.diffuse", &[0.05; 3]), ("s.f0", &f0), ("s.alpha", &[alpha])]);
 }
 
 /// Catches a fit that cannot be stopped, and a model of another category that is taken.
@@ -214,12 +220,21 @@ fn the_page_shows_the_fits() {
     );
     let document = document.unwrap_or_else(|error| panic!("{error}"));
     let text: String = document.descendants().filter_map(|node| node.text()).collect();
-    for said in ["Best fits to a table", "lambert", "s.diffuse (0.5, 0.5, 0.5)", "<none>: because", "phong"] {
+    for said in [
+        "Best fits to a table",
+        "lambert",
+        "s.diffuse (0.5, 0.5, 0.5)",
+        "<none>: because",
+        "phong",
+    ] {
         assert!(text.contains(said), "no {said}");
     }
     assert!(!text.contains("Modules without a row") && !text.contains("Device against evaluator"));
     let markdown = write::markdown(&report);
-    assert!(markdown.contains("## Best fits to a table\n") && markdown.contains("| lambert |"), "{markdown}");
+    assert!(
+        markdown.contains("## Best fits to a table\n") && markdown.contains("| lambert |"),
+        "{markdown}"
+    );
     let json: Report = serde_json::from_slice(&files[1].1).unwrap();
     assert_eq!(json, report);
 }

@@ -51,7 +51,11 @@ impl Merl {
             let given = i32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
             *size = usize::try_from(given).ok().filter(|n| SIZES.contains(n)).ok_or_else(|| {
                 let name = DIMENSIONS[axis];
-                Damaged::new(at, format!("a size of {name} from {} to {}", SIZES.start(), SIZES.end()), given.to_string())
+                Damaged::new(
+                    at,
+                    format!("a size of {name} from {} to {}", SIZES.start(), SIZES.end()),
+                    given.to_string(),
+                )
             })?;
         }
         let cells: usize = sizes.iter().product();

@@ -69,7 +69,11 @@ impl Rgl {
         let need = |name: &str| {
             find(name).ok_or_else(|| {
                 let names: Vec<String> = fields.iter().map(|field| format!("`{}`", field.name)).collect();
-                Damaged::new(18, format!("a field `{name}`"), if names.is_empty() { "none".into() } else { names.join(", ") })
+                Damaged::new(
+                    18,
+                    format!("a field `{name}`"),
+                    if names.is_empty() { "none".into() } else { names.join(", ") },
+                )
             })
         };
         let phi_i = angles(need("phi_i")?, [-TAU, TAU])?;
@@ -171,7 +175,14 @@ impl Rgl {
             self.rgb.height,
         ];
         let mut floats: Vec<f32> = sizes.iter().map(|size| *size as f32).collect();
-        floats.extend([flag(self.is_isotropic()), self.symmetry as f32, flag(self.has_jacobian), 0.0, 0.0, 0.0]);
+        floats.extend([
+            flag(self.is_isotropic()),
+            self.symmetry as f32,
+            flag(self.has_jacobian),
+            0.0,
+            0.0,
+            0.0,
+        ]);
         for part in [&self.phi_i, &self.theta_i, &self.ndf.values, &self.sigma.values] {
             floats.extend(part);
         }
@@ -196,7 +207,11 @@ fn sizes(shape: &[usize]) -> String {
 /// Angles of a field, ascending, between two bounds.
 fn angles(field: &Entry<'_>, bounds: [f64; 2]) -> Result<Vec<f32>, Damaged> {
     if field.shape.len() != 1 || field.shape[0] == 0 {
-        return Err(Damaged::new(field.at, format!("`{}` of one dimension", field.name), sizes(&field.shape)));
+        return Err(Damaged::new(
+            field.at,
+            format!("`{}` of one dimension", field.name),
+            sizes(&field.shape),
+        ));
     }
     let angles = field.floats()?;
     for (index, angle) in angles.iter().enumerate() {
@@ -235,7 +250,11 @@ fn symmetry(field: &Entry<'_>, phi_i: &[f32]) -> Result<usize, Damaged> {
 /// A grid of numbers from 0 on.
 fn grid(field: &Entry<'_>) -> Result<Grid, Damaged> {
     let [height, width] = field.shape[..] else {
-        return Err(Damaged::new(field.at, format!("`{}` of two dimensions", field.name), sizes(&field.shape)));
+        return Err(Damaged::new(
+            field.at,
+            format!("`{}` of two dimensions", field.name),
+            sizes(&field.shape),
+        ));
     };
     let values = densities(field, [width, height])?;
     Ok(Grid { width, height, values })
@@ -252,7 +271,11 @@ fn warp(field: &Entry<'_>, directions: [usize; 2]) -> Result<Warp, Damaged> {
     };
     Warp::new(width, height, densities(field, [width, height])?).map_err(|slice| {
         let at = field.offset + slice * width * height * 4;
-        Damaged::new(at, format!("a distribution in slice {slice} of `{}`", field.name), "nothing but zeros, or sums too small to divide by")
+        Damaged::new(
+            at,
+            format!("a distribution in slice {slice} of `{}`", field.name),
+            "nothing but zeros, or sums too small to divide by",
+        )
     })
 }
 

@@ -128,7 +128,11 @@ pub(super) fn fields(bytes: &[u8]) -> Result<Vec<Entry<'_>>, Damaged> {
     let mut reader = Reader { bytes, at: 0 };
     let magic = reader.take(MAGIC.len(), "the word tensor_file")?;
     if magic != MAGIC {
-        return Err(Damaged::new(0, "the word tensor_file and a zero byte", format!("{:?}", String::from_utf8_lossy(magic))));
+        return Err(Damaged::new(
+            0,
+            "the word tensor_file and a zero byte",
+            format!("{:?}", String::from_utf8_lossy(magic)),
+        ));
     }
     let version = reader.take(2, "a version")?;
     if version != VERSION {
@@ -138,13 +142,21 @@ pub(super) fn fields(bytes: &[u8]) -> Result<Vec<Entry<'_>>, Damaged> {
     let count = reader.number(4, "the number of fields")? as usize;
     if count > (bytes.len() - reader.at) / FIELD {
         let left = bytes.len() - reader.at;
-        return Err(Damaged::new(at, format!("no more fields than {left} bytes hold"), format!("{count} fields")));
+        return Err(Damaged::new(
+            at,
+            format!("no more fields than {left} bytes hold"),
+            format!("{count} fields"),
+        ));
     }
     let mut fields: Vec<Entry<'_>> = Vec::with_capacity(count);
     for _ in 0..count {
         let field = field(&mut reader)?;
         if fields.iter().any(|other| other.name == field.name) {
-            return Err(Damaged::new(field.at, "fields of different names", format!("a second `{}`", field.name)));
+            return Err(Damaged::new(
+                field.at,
+                "fields of different names",
+                format!("a second `{}`", field.name),
+            ));
         }
         fields.push(field);
     }
@@ -163,12 +175,18 @@ fn field<'a>(reader: &mut Reader<'a>) -> Result<Entry<'a>, Damaged> {
     // A byte.
     let kind = reader.number(1, "a type")? as u8;
     let Some((_, size)) = usize::from(kind).checked_sub(1).and_then(|kind| TYPES.get(kind)) else {
-        return Err(Damaged::new(kind_at, format!("a type from 1 to {} for `{name}`", TYPES.len()), kind.to_string()));
+        return Err(Damaged::new(
+            kind_at,
+            format!("a type from 1 to {} for `{name}`", TYPES.len()),
+            kind.to_string(),
+        ));
     };
     let offset_at = reader.at;
     let offset = reader.number(8, "the place of data")?;
     let sizes = reader.take(dimensions * 8, "sizes")?;
-    let shape = sizes.chunks_exact(8).map(|size| u64::from_le_bytes(size.try_into().unwrap_or_default()));
+    let shape = sizes
+        .chunks_exact(8)
+        .map(|size| u64::from_le_bytes(size.try_into().unwrap_or_default()));
     let shape: Option<Vec<usize>> = shape.map(|size| usize::try_from(size).ok()).collect();
     let all = shape.iter().flatten().try_fold(*size, |all, size| all.checked_mul(*size));
     let place = usize::try_from(offset).ok().zip(all).zip(shape);

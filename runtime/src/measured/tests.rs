@@ -138,8 +138,14 @@ fn damaged_merl_files_say_where() {
         bytes[at..at + with.len()].copy_from_slice(with);
         bytes
     };
-    assert_damaged(&[], "byte 0: expected 12 bytes of dimensions, found the end of the file after 0 bytes");
-    assert_damaged(&bytes[..7], "byte 7: expected 12 bytes of dimensions, found the end of the file after 7 bytes");
+    assert_damaged(
+        &[],
+        "byte 0: expected 12 bytes of dimensions, found the end of the file after 0 bytes",
+    );
+    assert_damaged(
+        &bytes[..7],
+        "byte 7: expected 12 bytes of dimensions, found the end of the file after 7 bytes",
+    );
     assert_damaged(
         &edited(4, &(-3i32).to_le_bytes()),
         "byte 4: expected a size of theta_d from 2 to 1024, found -3",
@@ -182,12 +188,18 @@ fn tensors_are_read_as_they_were_written() {
     // ndf / (4 sigma) is a half; values of red below 60 are those of the first elevation, then the two other channels stand 20 further each.
     for sample in &samples {
         let rgb = sample.value.map(|x| x * sample.l.z * 2.0);
-        assert!((rgb[1] - rgb[0] - 20.0).abs() < 1e-4 && (rgb[2] - rgb[0] - 40.0).abs() < 1e-4, "{rgb:?}");
+        assert!(
+            (rgb[1] - rgb[0] - 20.0).abs() < 1e-4 && (rgb[2] - rgb[0] - 40.0).abs() < 1e-4,
+            "{rgb:?}"
+        );
         let slice = (sample.v.z.acos() / 0.5).round() * 60.0;
         assert!(rgb[0] > slice - 1e-3 && rgb[0] < slice + 20.0, "{rgb:?} {slice}");
     }
     let floats = table.floats();
-    assert_eq!(floats[..16], [1.0, 3.0, 3.0, 2.0, 3.0, 2.0, 5.0, 4.0, 5.0, 4.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+    assert_eq!(
+        floats[..16],
+        [1.0, 3.0, 3.0, 2.0, 3.0, 2.0, 5.0, 4.0, 5.0, 4.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]
+    );
     assert_eq!(floats.len(), 16 + 4 + 6 + 6 + (60 + 60 + 12) + 180);
     assert_eq!(floats[floats.len() - 1], 179.0);
 }
@@ -201,16 +213,30 @@ fn damaged_tensor_files_say_where() {
         bytes[at..at + with.len()].copy_from_slice(with);
         bytes
     };
-    assert_damaged(&bytes[..13], "byte 12: expected 2 bytes of a version, found the end of the file after 1");
+    assert_damaged(
+        &bytes[..13],
+        "byte 12: expected 2 bytes of a version, found the end of the file after 1",
+    );
     assert_damaged(&edited(12, &[2]), "byte 12: expected version 1.0, found 2.0");
     assert_damaged(
         &edited(14, &[0xff; 4]),
-        &format!("byte 14: expected no more fields than {} bytes hold, found 4294967295 fields", bytes.len() - 18),
+        &format!(
+            "byte 14: expected no more fields than {} bytes hold, found 4294967295 fields",
+            bytes.len() - 18
+        ),
     );
     assert_damaged(&bytes[..20], "byte 14: expected no more fields than 2 bytes hold, found 8 fields");
     // The first field: length of its name, `description`, one dimension, type, offset, size.
-    assert_damaged(&edited(20, &[0xff]), "byte 18: expected a name in UTF-8, found \"\u{fffd}escription\"".replace("byte 18", "byte 20").as_str());
-    assert_damaged(&edited(33, &[12]), "byte 33: expected a type from 1 to 11 for `description`, found 12");
+    assert_damaged(
+        &edited(20, &[0xff]),
+        "byte 18: expected a name in UTF-8, found \"\u{fffd}escription\""
+            .replace("byte 18", "byte 20")
+            .as_str(),
+    );
+    assert_damaged(
+        &edited(33, &[12]),
+        "byte 33: expected a type from 1 to 11 for `description`, found 12",
+    );
     assert_damaged(
         &edited(34, &[0xff; 8]),
         &format!(
@@ -226,14 +252,14 @@ fn damaged_tensor_files_say_where() {
             u64::from(bytes[34]) + 256 * u64::from(bytes[35])
         ),
     );
-    assert_damaged(
-        &bytes[..bytes.len() - 4],
-        &{
-            let place = bytes.len() - 1;
-            let entry = place_of(&bytes, "jacobian");
-            format!("byte {entry}: expected data of `jacobian` within the file's {} bytes, found 1 bytes at {place}", bytes.len() - 4)
-        },
-    );
+    assert_damaged(&bytes[..bytes.len() - 4], &{
+        let place = bytes.len() - 1;
+        let entry = place_of(&bytes, "jacobian");
+        format!(
+            "byte {entry}: expected data of `jacobian` within the file's {} bytes, found 1 bytes at {place}",
+            bytes.len() - 4
+        )
+    });
     let floats = |name: &str, shape: &[usize], values: &[f32]| with(name, shape, Numbers::Floats(values.to_vec()));
     let starts = |file: &[u8], expected: &str| {
         let error = Measured::read(file).expect_err("an error").to_string();
@@ -244,10 +270,19 @@ fn damaged_tensor_files_say_where() {
         "expected `theta_i` ascending, from 0.0000 to 1.5709, found 0.5",
     );
     starts(&floats("phi_i", &[0], &[]), "expected `phi_i` of one dimension, found 0");
-    starts(&floats("theta_i", &[3], &[0.0, f32::NAN, 1.0]), "expected a finite number in `theta_i`, found NaN");
+    starts(
+        &floats("theta_i", &[3], &[0.0, f32::NAN, 1.0]),
+        "expected a finite number in `theta_i`, found NaN",
+    );
     starts(&floats("ndf", &[6], &[1.0; 6]), "expected `ndf` of two dimensions, found 6");
-    starts(&floats("ndf", &[1, 6], &[1.0; 6]), "expected a grid of `ndf` with 2 to 4096 points along each side, found 1 x 6");
-    starts(&floats("sigma", &[2, 2], &[1.0, 1.0, -1.0, 1.0]), "expected a number from 0 on in `sigma`, found -1");
+    starts(
+        &floats("ndf", &[1, 6], &[1.0; 6]),
+        "expected a grid of `ndf` with 2 to 4096 points along each side, found 1 x 6",
+    );
+    starts(
+        &floats("sigma", &[2, 2], &[1.0, 1.0, -1.0, 1.0]),
+        "expected a number from 0 on in `sigma`, found -1",
+    );
     starts(
         &floats("vndf", &[3, 1, 4, 5], &[1.0; 60]),
         "expected `vndf` of 1 x 3 x height x width, as `phi_i` and `theta_i` are, found 3 x 1 x 4 x 5",
@@ -262,8 +297,14 @@ fn damaged_tensor_files_say_where() {
         &floats("rgb", &[3, 1, 3, 4, 5], &[1.0; 180]),
         "expected `rgb` of 1 x 3 x 3 x height x width, as `phi_i` and `theta_i` are, found 3 x 1 x 3 x 4 x 5",
     );
-    starts(&with("ndf", &[1], Numbers::Bytes(vec![1])), "expected `ndf` of two dimensions, found 1");
-    starts(&with("rgb", &[1, 3, 3, 4, 5], Numbers::Bytes(vec![1; 180])), "expected `rgb` of type f32, found type u8");
+    starts(
+        &with("ndf", &[1], Numbers::Bytes(vec![1])),
+        "expected `ndf` of two dimensions, found 1",
+    );
+    starts(
+        &with("rgb", &[1, 3, 3, 4, 5], Numbers::Bytes(vec![1; 180])),
+        "expected `rgb` of type f32, found type u8",
+    );
     let mut spectral = super::tests::fields();
     spectral.iter_mut().find(|field| field.name == "rgb").expect("a field").name = "spectra".into();
     starts(
@@ -272,14 +313,20 @@ fn damaged_tensor_files_say_where() {
     );
     let mut twice = super::tests::fields();
     twice[1].name = "theta_i".into();
-    starts(&write_tensors(&twice), "expected fields of different names, found a second `theta_i`");
+    starts(
+        &write_tensors(&twice),
+        "expected fields of different names, found a second `theta_i`",
+    );
     twice.truncate(2);
     starts(&write_tensors(&twice), "expected a field `phi_i`, found `description`, `theta_i`");
 }
 
 /// Where a field's place stands.
 fn place_of(bytes: &[u8], name: &str) -> usize {
-    let at = bytes.windows(name.len()).position(|window| window == name.as_bytes()).expect("a name");
+    let at = bytes
+        .windows(name.len())
+        .position(|window| window == name.as_bytes())
+        .expect("a name");
     at + name.len() + 3
 }
 
@@ -294,7 +341,9 @@ fn azimuths_go_round() {
                 "phi_i" => (field.shape, field.numbers) = (vec![n], Numbers::Floats(azimuths.to_vec())),
                 "vndf" | "rgb" => {
                     field.shape[0] = n;
-                    let Numbers::Floats(floats) = &mut field.numbers else { panic!("floats") };
+                    let Numbers::Floats(floats) = &mut field.numbers else {
+                        panic!("floats")
+                    };
                     *floats = floats.repeat(n);
                 }
                 _ => {}
@@ -309,7 +358,10 @@ fn azimuths_go_round() {
     assert_eq!(symmetry(&[-pi, -1.0, 0.0]), Ok((false, 2.0)));
     assert_eq!(symmetry(&[-pi, -2.0, -pi / 2.0]), Ok((false, 4.0)));
     let error = symmetry(&[0.0, 1.0, 2.0]).expect_err("an error").to_string();
-    assert!(error.ends_with("expected azimuths all round, or a half or a quarter round from -pi, found 0 to 2"), "{error}");
+    assert!(
+        error.ends_with("expected azimuths all round, or a half or a quarter round from -pi, found 0 to 2"),
+        "{error}"
+    );
 }
 
 /// Catches a warp that does not spread points as its function says: the share that lands in a part is the function's integral there.
@@ -355,7 +407,9 @@ fn samples_are_spread() {
 fn no_bytes_make_a_reader_panic() {
     let mut state = 1u64;
     let mut random = move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize
     };
     let mut read = 0;
@@ -382,7 +436,12 @@ fn no_bytes_make_a_reader_panic() {
                 read += 1;
                 let floats = table.floats();
                 assert!(floats.len() * 4 <= 4 * bytes.len() + 4096 && floats.iter().all(|x| x.is_finite()));
-                assert!(table.samples(50, 1.4).iter().all(|s| s.value.iter().all(|x| x.is_finite() && *x >= 0.0)));
+                assert!(
+                    table
+                        .samples(50, 1.4)
+                        .iter()
+                        .all(|s| s.value.iter().all(|x| x.is_finite() && *x >= 0.0))
+                );
             }
         }
     }

@@ -86,7 +86,11 @@ fn interval(size: usize, is_before: impl Fn(usize) -> bool) -> usize {
 fn invert(a: f64, b: f64, area: f64) -> f64 {
     let root = (a * a + 2.0 * area * (b - a)).max(0.0).sqrt();
     // The quadratic formula without cancellation. Where nothing is, any place is as good.
-    if a + root > 0.0 { (2.0 * area / (a + root)).clamp(0.0, 1.0) } else { 0.5 }
+    if a + root > 0.0 {
+        (2.0 * area / (a + root)).clamp(0.0, 1.0)
+    } else {
+        0.5
+    }
 }
 
 /// A bilinear function's value at a point of the unit square.

@@ -1,8 +1,8 @@
 //! A model held against what was measured.
 
 use serde_json::{Map, Value as Json, json};
-use shadewright_compiler::{Catalog, Recipe, Report};
 use shadewright_compiler::diagnostics::{Diagnostic, codes};
+use shadewright_compiler::{Catalog, Recipe, Report};
 use shadewright_evaluate::Counts;
 use shadewright_runtime::measured::Sample;
 use shadewright_runtime::probe::Probe;
@@ -45,7 +45,7 @@ impl Comparison {
         }
         let read = probe.input().and_then(|(_, layout)| layout.element.as_deref());
         let is_read = |name: &str| read.is_some_and(|layout| layout.members.iter().any(|member| member.name == name));
-        let row = |sample: &Sample| {
+        let row = |sample: &Sample| -> Map<String, Json> {
             let directions = [(&declared.view, sample.v), (&declared.light, sample.l)];
             let read = directions.into_iter().filter(|(name, _)| is_read(name));
             read.map(|(name, direction)| (name.clone(), json!(direction.to_array()))).collect()
@@ -70,7 +70,8 @@ impl Comparison {
         };
         let rows: Vec<Json> = self.rows.iter().take(count).map(whole).collect();
         let evaluated = self.probe.on_cpu::<f64>(&self.probe.table(&rows)?)?;
-        let compress = |(values, (cosine, _)): (Vec<f64>, &(f64, [f64; 3]))| values.iter().map(|f| compressed(*f, *cosine)).collect();
+        let compress =
+            |(values, (cosine, _)): (Vec<f64>, &(f64, [f64; 3]))| -> Vec<f64> { values.iter().map(|f| compressed(*f, *cosine)).collect() };
         let values = evaluated.values.into_iter().zip(&self.measured).map(compress).collect();
         Ok((values, evaluated.executed))
     }

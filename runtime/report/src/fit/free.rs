@@ -98,7 +98,9 @@ impl Variables {
                 high,
                 start: Vec::new(),
             };
-            variable.start = (0..components).map(|i| variable.unit(default(&param.declared.default, i))).collect();
+            variable.start = (0..components)
+                .map(|i| variable.unit(default(&param.declared.default, i)))
+                .collect();
             variables.push(variable);
         }
         Self(variables)

@@ -191,7 +191,10 @@ fn rank(rows: &mut [Fit]) {
     let place = |row: &Fit| (row.errors.rms.max(ROUNDING), row.executed.mean);
     rows.sort_by(|a, b| {
         let ((a_error, a_cost), (b_error, b_cost)) = (place(a), place(b));
-        a_error.total_cmp(&b_error).then(a_cost.total_cmp(&b_cost)).then_with(|| a.label.cmp(&b.label))
+        a_error
+            .total_cmp(&b_error)
+            .then(a_cost.total_cmp(&b_cost))
+            .then_with(|| a.label.cmp(&b.label))
     });
     let places: Vec<(f64, f64)> = rows.iter().map(place).collect();
     for (row, (error, cost)) in rows.iter_mut().zip(&places) {
@@ -218,7 +221,11 @@ fn root<'c>(catalog: &'c Catalog, subject: &Subject, recipe: &Recipe) -> Result<
 fn unfit(probe: &Probe) -> Option<String> {
     let bindings = &probe.program().reflection().bindings;
     let own = [probe.input(), probe.output()];
-    let tables = own.iter().flatten().map(|(binding, _)| (binding.group, binding.binding)).collect::<Vec<_>>();
+    let tables = own
+        .iter()
+        .flatten()
+        .map(|(binding, _)| (binding.group, binding.binding))
+        .collect::<Vec<_>>();
     let foreign = bindings
         .iter()
         .find(|binding| matches!(binding.fill, Fill::Resource { .. }) && !tables.contains(&(binding.group, binding.binding)));

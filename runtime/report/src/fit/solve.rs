@@ -31,7 +31,11 @@ pub fn best(model: &Comparison, count: usize, cancel: &AtomicBool) -> Result<Fit
     for begin in beginnings(model, count, &mut evaluations)? {
         let mut search = Search::new(model, count, dimensions, cancel);
         let mut point = begin.clone();
-        let ended = if dimensions > 0 { search.mpfit(&mut point).map(|_| ()) } else { Ok(()) };
+        let ended = if dimensions > 0 {
+            search.mpfit(&mut point).map(|_| ())
+        } else {
+            Ok(())
+        };
         evaluations += search.evaluations;
         match ended {
             Ok(()) | Err(MPError::Nan) => {}

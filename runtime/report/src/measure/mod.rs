@@ -25,9 +25,9 @@ use serde_json::{Value as Json, json};
 use shadewright_compiler::Report;
 use shadewright_runtime::gpu::RuntimeError;
 
-pub(crate) use row::{Effort, Measured, OnDevice, configurations, key, mark_dominated, measure, one_line};
 pub(crate) use errors::statistics;
 pub(crate) use executed::executed;
+pub(crate) use row::{Effort, Measured, OnDevice, configurations, key, mark_dominated, measure, one_line};
 pub(crate) use sample::{Random, latin};
 pub(crate) use subject::Subject;
 

@@ -26,7 +26,11 @@ fn fits(fits: &Fits) -> String {
         let errors = &row.errors;
         let figures = [errors.rms, errors.p95, errors.max].map(number).join(" | ");
         let (bias, cost) = (signed(errors.bias), number(row.executed.mean));
-        text += &format!("| {} | {figures} | {bias} | {cost} | {} |\n", cell(&row.label), cell(&parameters(row)));
+        text += &format!(
+            "| {} | {figures} | {bias} | {cost} | {} |\n",
+            cell(&row.label),
+            cell(&parameters(row))
+        );
     }
     text
 }

@@ -132,7 +132,14 @@ pub fn page(report: &Report, figures: &[Figures]) -> Result<String, WriteError> 
             .zip(figures)
             .map(|(results, figures)| section(results, figures))
             .collect(),
-        fits: report.fits.iter().map(|fits| FitSection { fits, table: table::fits(fits) }).collect(),
+        fits: report
+            .fits
+            .iter()
+            .map(|fits| FitSection {
+                fits,
+                table: table::fits(fits),
+            })
+            .collect(),
         agreement: (!report.agreement.is_empty()).then(|| table::agreement(&report.agreement)),
         closest: report.agreement.iter().filter_map(closest_line).collect(),
         without: report.without.iter().collect(),
