@@ -22,8 +22,8 @@ use indexmap::IndexMap;
 use serde::Deserialize;
 use shadewright_compiler::catalog::Signature;
 use shadewright_compiler::diagnostics::{Diagnostic, codes};
-use shadewright_compiler::manifest::{Node, Parsed, Step, parse};
-use shadewright_compiler::reflect::Fill;
+use shadewright_compiler::manifest::{Node, Parsed, ResourceKind, Step, parse};
+use shadewright_compiler::reflect::{Binding, Fill};
 use shadewright_compiler::{Catalog, Library, Module, Recipe, Report};
 use shadewright_runtime::measured::Measured;
 use shadewright_runtime::probe::Probe;
@@ -217,17 +217,14 @@ fn root<'c>(catalog: &'c Catalog, subject: &Subject, recipe: &Recipe) -> Result<
     Err(Report::from(Diagnostic::new(codes::FIT_INVALID, message)).into())
 }
 
-/// Why a linked model cannot be fitted, if so: it reads what a fit cannot vary.
+/// Why a linked model cannot be fitted, if so: it reads what a fit does not vary. A module's own tables are part of its formula.
 fn unfit(probe: &Probe) -> Option<String> {
-    let bindings = &probe.program().reflection().bindings;
-    let own = [probe.input(), probe.output()];
-    let tables = own
-        .iter()
-        .flatten()
-        .map(|(binding, _)| (binding.group, binding.binding))
-        .collect::<Vec<_>>();
-    let foreign = bindings
-        .iter()
-        .find(|binding| matches!(binding.fill, Fill::Resource { .. }) && !tables.contains(&(binding.group, binding.binding)));
+    let own = [probe.input(), probe.output()].map(|table| table.map(|(binding, _)| (binding.group, binding.binding)));
+    let is_foreign = |binding: &&Binding| match &binding.fill {
+        Fill::Resource { declared: ResourceKind::Data { format, .. }, .. } => format.is_some(),
+        Fill::Resource { .. } => !own.contains(&Some((binding.group, binding.binding))),
+        _ => false,
+    };
+    let foreign = probe.program().reflection().bindings.iter().find(is_foreign);
     foreign.map(|binding| format!("reads `{}`, which a fit does not vary", binding.name))
 }
