@@ -221,7 +221,10 @@ fn root<'c>(catalog: &'c Catalog, subject: &Subject, recipe: &Recipe) -> Result<
 fn unfit(probe: &Probe) -> Option<String> {
     let own = [probe.input(), probe.output()].map(|table| table.map(|(binding, _)| (binding.group, binding.binding)));
     let is_foreign = |binding: &&Binding| match &binding.fill {
-        Fill::Resource { declared: ResourceKind::Data { format, .. }, .. } => format.is_some(),
+        Fill::Resource {
+            declared: ResourceKind::Data { format, .. },
+            ..
+        } => format.is_some(),
         Fill::Resource { .. } => !own.contains(&Some((binding.group, binding.binding))),
         _ => false,
     };

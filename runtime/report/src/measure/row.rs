@@ -268,18 +268,13 @@ pub(crate) fn key(subject: &Subject, rows: &[Json], effort: &Effort, provenance:
 
 /// The recipe as a person would type it: the bare name, or RON.
 pub(super) fn recipe_text(subject: &Subject) -> String {
-<<<<<<< HEAD
     one_line(&subject.alternative.recipe)
 }
 
 /// A recipe on one line, the module's name alone where that is all.
 pub(crate) fn one_line(recipe: &Recipe) -> String {
     let node = &recipe.root;
-    if node.fill.is_empty() && node.freeze.is_empty() {
-=======
-    let node = &subject.alternative.recipe.root;
     if node.fill.is_empty() && node.freeze.is_empty() && node.files.is_empty() {
->>>>>>> 880f87a
         return node.module.clone();
     }
     recipe.source.text.split_whitespace().collect::<Vec<_>>().join(" ")
