@@ -7,6 +7,7 @@ use std::hash::Hash as _;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
+use shadewright_compiler::Recipe;
 use shadewright_evaluate::Allowed;
 use shadewright_modules::oracles;
 use shadewright_runtime::gpu::Gpu;
