@@ -4,42 +4,22 @@ var<storage, read> measured: array<f32>;
 /// What was measured, interpolated evenly in each coordinate of the table, 1/sr (Matusik et al. 2003). Half and difference angles after Rusinkiewicz 1998.
 /// Zero where either direction is below the horizon of the shading normal.
 fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
-    if dot(s.normal, v) <= 0.0 || dot(s.normal, l) <= 0.0 {
+    if !above_horizon(s.normal, v, l) {
         return vec3f(0.0);
     }
     let h = v + l;
     let d = l - v;
     let size = length(h);
     let across = cross(s.normal, h);
-    let theta_h = angle(length(across), dot(s.normal, h));
+    let theta_h = polar_angle(length(across), dot(s.normal, h));
     // |l - v| / |l + v| is the tangent: exact for small angles, where an arc cosine of a product is not.
-    let theta_d = angle(length(d), size);
+    let theta_d = polar_angle(length(d), size);
     // l - v is perpendicular to h: its part along n x h, and that along the direction in which theta_h grows, both times |n x h|.
     let along = vec2f(-dot(d, s.normal) * size, dot(d, across));
     // phi_d + pi is phi_d: the light and the viewer, exchanged.
     let turned = select(along, -along, along.y < 0.0);
-    let phi_d = angle(turned.y, turned.x);
+    let phi_d = polar_angle(turned.y, turned.x);
     return interpolated(vec3f(sqrt(theta_h * 2.0 * INV_PI), theta_d * 2.0 * INV_PI, phi_d * INV_PI));
-}
-
-/// The angle from the x axis to a point with y not below 0, in [0, pi], rad; 0 at the origin. A polynomial of ours: relative error 2e-7, where
-/// WGSL promises 4096 units in the last place of its own.
-fn angle(y: f32, x: f32) -> f32 {
-    let most = max(y, abs(x));
-    // The floor keeps 0 / 0 from the origin alone: squares of anything smaller are 0 in f32.
-    let t = min(y, abs(x)) / max(most, 1e-30);
-    let t2 = t * t;
-    var p = 0.0028498882;
-    p = p * t2 - 0.0160686234;
-    p = p * t2 + 0.0426915103;
-    p = p * t2 - 0.0750429378;
-    p = p * t2 + 0.1064093367;
-    p = p * t2 - 0.1420364438;
-    p = p * t2 + 0.1999261938;
-    p = p * t2 - 0.3333307334;
-    p = (p * t2 + 0.9999999848) * t;
-    let acute = select(p, 0.5 * PI - p, y > abs(x));
-    return select(acute, PI - acute, x < 0.0);
 }
 
 /// The table at a place in the unit cube. theta_h and theta_d have points at 0 and in the middles of the cells, and beyond the last middle the last

@@ -2,24 +2,20 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use glam::{DQuat, DVec3};
+use glam::DQuat;
 
+use crate::oracles::lobes::{cosine_density, lit, local};
 use crate::oracles::{At, Truth};
 
-pub(super) const TRUTHS: &[(&str, Truth)] = &[("brdf", brdf)];
+pub(super) const TRUTHS: &[(&str, Truth)] = &[("brdf", brdf), ("brdf_pdf", brdf_pdf)];
 
 /// The file that the module has where nobody names another.
 const FILE: &[u8] = include_bytes!("sample.binary");
 
 /// Matusik et al. 2003, with Rusinkiewicz's angles.
 fn brdf(at: &At) -> Vec<f64> {
-    let (n, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
-    if n.dot(v) <= 0.0 || n.dot(l) <= 0.0 {
-        return vec![0.0; 3];
-    }
-    let tangent = at.vector("s.tangent");
-    let local = |w: DVec3| DVec3::new(w.dot(tangent), w.dot(n.cross(tangent)), w.dot(n)).normalize();
-    let (v, l) = (local(v), local(l));
+    let Some(lit) = lit(at) else { return vec![0.0; 3] };
+    let (v, l) = (local(at, lit.v).normalize(), local(at, lit.l).normalize());
     let h = (v + l).normalize();
     let (theta_h, phi_h) = (h.truncate().length().atan2(h.z), h.y.atan2(h.x));
     // The light, where the half vector is the z axis.
@@ -87,4 +83,9 @@ impl<'a> Table<'a> {
         let plane = |h: usize| mix(row(h, d), row(h, d + 1), part_d);
         mix(plane(h), plane(h + 1), part_h)
     }
+}
+
+/// By the cosine.
+fn brdf_pdf(at: &At) -> Vec<f64> {
+    vec![cosine_density(at)]
 }

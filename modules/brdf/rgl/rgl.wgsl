@@ -22,12 +22,11 @@ struct Patch {
 /// values D(m) / (4 sigma(v) n.l), the values where the warp by the visible facets comes from, 1/sr (Dupuy and Jakob 2018). Zero where either
 /// direction is below the horizon of the shading normal.
 fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
-    let across = cross(s.normal, s.tangent);
-    var i = vec3f(dot(s.tangent, v), dot(across, v), dot(s.normal, v));
-    var o = vec3f(dot(s.tangent, l), dot(across, l), dot(s.normal, l));
-    if i.z <= 0.0 || o.z <= 0.0 {
+    if !above_horizon(s.normal, v, l) {
         return vec3f(0.0);
     }
+    var i = to_local(s, v);
+    var o = to_local(s, l);
     // Into the part of the circle that the table has: from -pi on, a half of it turned, a quarter mirrored.
     let flip = select(vec2f(1.0), vec2f(-1.0), i.xy > vec2f(0.0));
     let times = measured[11];
@@ -39,9 +38,9 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     // The azimuth of an isotropic table counts from that of i.
     let from_i = vec2f(dot(i.xy, m.xy), i.x * m.y - i.y * m.x);
     let turned = select(m.xy, from_i, is_isotropic);
-    let phi_i = signed_angle(i.y, i.x);
-    let theta_i = angle(length(i.xy), i.z);
-    let u_m = vec2f(elevation(angle(length(m.xy), m.z)), azimuth(signed_angle(turned.y, turned.x)));
+    let phi_i = azimuth_of(i.xy);
+    let theta_i = polar_angle(length(i.xy), i.z);
+    let u_m = vec2f(elevation(polar_angle(length(m.xy), m.z)), azimuth(azimuth_of(turned)));
     let slices = slices_at(phi_i, theta_i);
     let even = unwarp(u_m, slices);
     let count = slice_count();
@@ -166,28 +165,8 @@ fn unwarp(u: vec2f, slices: Slices) -> vec2f {
     return vec2f(along, up);
 }
 
-/// As `angle`, of any point: in [-pi, pi], rad.
-fn signed_angle(y: f32, x: f32) -> f32 {
-    let positive = angle(abs(y), x);
-    return select(positive, -positive, y < 0.0);
-}
-
-/// The angle from the x axis to a point with y not below 0, in [0, pi], rad; 0 at the origin. A polynomial of ours: relative error 2e-7, where
-/// WGSL promises 4096 units in the last place of its own.
-fn angle(y: f32, x: f32) -> f32 {
-    let most = max(y, abs(x));
-    // The floor keeps 0 / 0 from the origin alone: squares of anything smaller are 0 in f32.
-    let t = min(y, abs(x)) / max(most, 1e-30);
-    let t2 = t * t;
-    var p = 0.0028498882;
-    p = p * t2 - 0.0160686234;
-    p = p * t2 + 0.0426915103;
-    p = p * t2 - 0.0750429378;
-    p = p * t2 + 0.1064093367;
-    p = p * t2 - 0.1420364438;
-    p = p * t2 + 0.1999261938;
-    p = p * t2 - 0.3333307334;
-    p = (p * t2 + 0.9999999848) * t;
-    let acute = select(p, 0.5 * PI - p, y > abs(x));
-    return select(acute, PI - acute, x < 0.0);
+/// The azimuth of a point from the x axis, in [-pi, pi], rad.
+fn azimuth_of(p: vec2f) -> f32 {
+    let positive = polar_angle(abs(p.y), p.x);
+    return select(positive, -positive, p.y < 0.0);
 }

@@ -3,11 +3,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use glam::DVec3;
-
+use crate::oracles::lobes::{cosine_density, lit, spherical};
 use crate::oracles::{At, Truth};
 
-pub(super) const TRUTHS: &[(&str, Truth)] = &[("brdf", brdf)];
+pub(super) const TRUTHS: &[(&str, Truth)] = &[("brdf", brdf), ("brdf_pdf", brdf_pdf)];
 
 /// The file that the module has where nobody names another.
 const FILE: &[u8] = include_bytes!("sample.bsdf");
@@ -84,17 +83,8 @@ fn parts(end: f64, points: usize) -> impl Iterator<Item = (f64, f64)> {
 
 /// Dupuy and Jakob 2018: rgb D / (4 sigma cos), of the table's isotropic kind.
 fn brdf(at: &At) -> Vec<f64> {
-    let (n, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
-    let (cos_v, cos_l) = (n.dot(v), n.dot(l));
-    if cos_v <= 0.0 || cos_l <= 0.0 {
-        return vec![0.0; 3];
-    }
-    let angles = |w: DVec3| {
-        let tangent = at.vector("s.tangent");
-        let (x, y, z) = (w.dot(tangent), w.dot(n.cross(tangent)), w.dot(n));
-        (x.hypot(y).atan2(z), y.atan2(x))
-    };
-    let ((theta_v, phi_v), (theta_m, phi_m)) = (angles(v), angles(v + l));
+    let Some(lit) = lit(at) else { return vec![0.0; 3] };
+    let ((theta_v, phi_v), (theta_m, phi_m)) = (spherical(at, lit.v), spherical(at, lit.v + lit.l));
     let u = ((theta_m / FRAC_PI_2).sqrt(), ((phi_m - phi_v + PI) / TAU).rem_euclid(1.0));
     let thetas = Field::of("theta_i");
     let count = thetas.sizes[0];
@@ -112,5 +102,10 @@ fn brdf(at: &At) -> Vec<f64> {
     let normals = Field::of("ndf").at(0, u.0, u.1);
     let area = Field::of("sigma").at(0, (theta_v / FRAC_PI_2).sqrt(), ((phi_v + PI) / TAU).clamp(0.0, 1.0));
     let value = |channel: usize| slices.iter().map(|(slice, weight)| weight * rgb.at(slice * 3 + channel, even.0, even.1)).sum::<f64>();
-    (0..3).map(|channel| value(channel) * normals / (4.0 * area * cos_l)).collect()
+    (0..3).map(|channel| value(channel) * normals / (4.0 * area * lit.theta_l.cos())).collect()
+}
+
+/// By the cosine.
+fn brdf_pdf(at: &At) -> Vec<f64> {
+    vec![cosine_density(at)]
 }

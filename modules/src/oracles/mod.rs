@@ -8,8 +8,10 @@
 //! ([`TRUTHS`](self) of that file, found by the build script as the modules are). A category's folder may have one for
 //! what its modules approximate.
 
+pub mod appearance;
 pub mod display;
 pub mod lights;
+pub mod lobes;
 pub mod quadrature;
 pub mod reflection;
 pub mod shadows;

@@ -5,6 +5,7 @@
 mod faults;
 mod markdown;
 mod number;
+mod sheet;
 mod text;
 
 mod drawing;
@@ -16,6 +17,7 @@ pub use drawing::pareto::dominated;
 pub use faults::{Fault, Kind, faults};
 pub use markdown::markdown;
 pub use number::number;
+pub use sheet::{Tile, sheet, sheet_size};
 pub use text::{parameters, replay};
 
 use crate::data::Report;
