@@ -11,6 +11,8 @@ use shadewright_compiler::data::{self, Data, Origin, fits};
 use shadewright_compiler::diagnostics::{Diagnostic, codes};
 use shadewright_compiler::program::Program;
 
+use crate::measured::{Merl, Rgl};
+
 /// Largest file of data, bytes.
 pub const MAX_DATA: u64 = 256 << 20;
 
@@ -21,7 +23,15 @@ pub type Decoder = fn(&[u8]) -> Result<Vec<f32>, String>;
 pub const PLAIN: &str = "f32";
 
 /// Every format by name.
-pub const FORMATS: &[(&str, Decoder)] = &[(PLAIN, data::numbers)];
+pub const FORMATS: &[(&str, Decoder)] = &[
+    (PLAIN, data::numbers),
+    ("merl", |bytes| {
+        Merl::read(bytes).map(|table| table.floats()).map_err(|why| why.to_string())
+    }),
+    ("rgl", |bytes| {
+        Rgl::read(bytes).map(|table| table.floats()).map_err(|why| why.to_string())
+    }),
+];
 
 /// Why bytes are no numbers.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
