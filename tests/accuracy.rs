@@ -69,6 +69,12 @@ const EXCEPTIONS: &[(&str, f64, &str)] = &[
         "where C shrinks the lobe its peak is no cosine of 1, and 6e-8 of it counts 2 / alpha^2 times",
     ),
     ("fresnel/f82 fresnel", 1e-1, "a dark tint makes the sum of two terms cross 0"),
+    ("fresnel/schlick-f82 fresnel", 1e-1, "as in f82"),
+    (
+        "fresnel/schlick-f90 fresnel",
+        5e-4,
+        "where f90 is far below f0 the sum of two terms nears 0 at the horizon",
+    ),
 ];
 
 /// A stratified number for each step: multiples of an irrational fill the unit interval evenly.
@@ -181,7 +187,7 @@ fn row(place: &Place, alpha: f64, widths: [f64; 2], step: usize, [v, l, facet]: 
     json!({
         "s": {
             "normal": place.world(DVec3::Z), "tangent": place.world(DVec3::X), "alpha": single(alpha), "widths": widths.map(single),
-            "f0": color(14), "f90": color(12), "diffuse": [0.0, diffuse[0], diffuse[2]], "diffuse_roughness": share(18),
+            "f0": color(14), "f90": color(12), "f82": color(4), "diffuse": [0.0, diffuse[0], diffuse[2]], "diffuse_roughness": share(18),
             "coat": share(19), "coat_alpha": single(alpha), "coat_ior": 1.5, "coat_color": color(10), "coat_normal": place.world(DVec3::Z),
             "fuzz": share(17), "fuzz_color": color(8), "fuzz_roughness": share(6),
         },
@@ -219,9 +225,14 @@ struct Subject {
     params: Vec<Json>,
 }
 
-/// Parameters as a device gets them: the defaults, the ends of their ranges, and between. Those of a fit belong together.
+/// Parameters as a device gets them: the defaults, the ends of their ranges, and between. Those of a fit belong together; switches stay as they are.
 fn sets(module: &Module) -> Vec<Json> {
-    let params = &module.manifest.params;
+    let params: Vec<(&String, &Param)> = module
+        .manifest
+        .params
+        .iter()
+        .filter(|(_, p)| !matches!(p.default, Value::Bool(_)))
+        .collect();
     let list = |value: &Value| match value {
         Value::Number(x) => vec![*x],
         Value::List(list) => list.clone(),
@@ -234,7 +245,7 @@ fn sets(module: &Module) -> Vec<Json> {
                 .iter()
                 .map(|x| f64::from(choose(param, index, *x) as f32))
                 .collect();
-            set.insert(name.clone(), if numbers.len() == 1 { json!(numbers[0]) } else { json!(numbers) });
+            set.insert((*name).clone(), if numbers.len() == 1 { json!(numbers[0]) } else { json!(numbers) });
         }
         Json::Object(set)
     };
