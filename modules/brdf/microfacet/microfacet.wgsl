@@ -6,6 +6,9 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     // Opposite directions, both at the horizon, have no half vector; any will do, the normal is as good.
     let h = unit_or(v + l, s.normal);
     let facets = distribution(s, h) * masking(s, v, l, h);
+    if params.compensated {
+        return compensate(s, v, l, fresnel(s, dot(v, h)) * facets) + diffuse(s, v, l);
+    }
     return fresnel(s, dot(v, h)) * facets + diffuse(s, v, l);
 }
 
