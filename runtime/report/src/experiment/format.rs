@@ -77,6 +77,7 @@ pub enum Params {
 }
 
 /// What a module should give.
+#[allow(clippy::large_enum_variant, reason = "one exists for an experiment")]
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub enum TruthSource {
     /// The closed form in the folder of each alternative's root module.
