@@ -15,6 +15,7 @@ mod permutations;
 mod probe;
 mod render;
 mod report;
+mod sheet;
 mod show;
 mod table;
 mod text;
@@ -81,6 +82,8 @@ enum Command {
     Permutations(permutations::Options),
     /// Draws a scene into a PNG (displayed) or EXR (linear, cd/m2) file
     Render(render::Options),
+    /// Draws a scene with every choice of a space into one picture (*.png), labelled
+    Sheet(sheet::Options),
     /// Evaluates an interface function on the GPU over a table of inputs
     Probe(probe::Options),
     /// Compares modules: speed against error, over experiments that the library declares
@@ -141,6 +144,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Diff(options) => diff::run(&context(&arguments.modules)?, &options),
         Command::Permutations(options) => permutations::run(&context(&arguments.modules)?, &options),
         Command::Render(options) => render::run(context(&arguments.modules)?, &options),
+        Command::Sheet(options) => sheet::run(context(&arguments.modules)?, &options),
         Command::Report(options) => report::run(&context(&arguments.modules)?, &options),
         Command::Table(options) => table::run(&context(&arguments.modules)?, &options),
         Command::Probe(options) => probe::run(&context(&arguments.modules)?, &options),

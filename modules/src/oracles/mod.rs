@@ -9,8 +9,10 @@
 //! what its modules approximate.
 
 pub mod albedo;
+pub mod appearance;
 pub mod display;
 pub mod lights;
+pub mod lobes;
 pub mod quadrature;
 pub mod reflection;
 pub mod shadows;
