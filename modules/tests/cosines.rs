@@ -13,7 +13,7 @@ use std::thread;
 use glam::{DMat3, DVec3};
 use shadewright_modules::library;
 use shadewright_modules::oracles::cosines::{Cosine, Lobe, NUMBERS, SIDE, alpha_of, cell, look_up, table, theta_of};
-use shadewright_modules::oracles::lobes::{beckmann, ggx, ward};
+use shadewright_modules::oracles::drawn::{beckmann, ggx, ward};
 use shadewright_modules::oracles::reflection::{Surface, microfacet};
 
 /// Lights of one roughness.

@@ -48,7 +48,7 @@ fn numbers(module: &Module, options: &Options) -> Result<Vec<f32>, Failure> {
         let message = format!("`{}` has no table `{}`", module.name, options.resource);
         let found =
             Diagnostic::new(codes::UNKNOWN_FILE, message).suggest(&options.resource, "tables", known.map(|(name, _)| name.as_str()));
-        return Err(found.into());
+        return Err(shadewright::compiler::Report::from(found).into());
     };
     let plain = format.as_deref().unwrap_or(PLAIN);
     let wrong = |file: &str, why: &dyn std::fmt::Display| Failure::message(format!("{file}: {why}"));

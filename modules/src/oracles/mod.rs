@@ -9,9 +9,11 @@
 //! what its modules approximate.
 
 pub mod albedo;
+pub mod appearance;
 pub mod area;
 pub mod cosines;
 pub mod display;
+pub mod drawn;
 pub mod lights;
 pub mod lobes;
 pub mod quadrature;
