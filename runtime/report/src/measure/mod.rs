@@ -26,6 +26,7 @@ use shadewright_compiler::Report;
 use shadewright_runtime::gpu::RuntimeError;
 
 pub(crate) use row::{Effort, Measured, OnDevice, configurations, key, mark_dominated, measure};
+pub(crate) use sample::Random;
 pub(crate) use subject::Subject;
 
 use crate::data::Worst;

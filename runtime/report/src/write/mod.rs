@@ -5,6 +5,7 @@
 mod faults;
 mod markdown;
 mod number;
+mod proofs;
 mod text;
 
 mod drawing;
@@ -15,6 +16,7 @@ mod tables;
 pub use drawing::pareto::dominated;
 pub use faults::{Fault, Kind, faults};
 pub use markdown::markdown;
+pub use proofs::proofs;
 pub use text::replay;
 
 use crate::data::Report;
