@@ -57,12 +57,12 @@ fn one_per_cent_is_seen() {
     };
     let of_ward = |catalog: &Catalog, samples: usize| drawn(catalog, samples, &|name| name == "brdf/ward").remove(0);
 
-    let (shifted, _folder) = mutant("fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {\n    let share = lobe_share(s);", "fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {\n    let share = 1.01 * lobe_share(s);");
+    let (shifted, _folder) = mutant("let share = lobe_share(", "let share = 1.01 * lobe_share(");
     let (few, many) = (of_ward(&shifted, 30_000), of_ward(&shifted, SAMPLES));
     println!("1 % of the lobe: p {:.1e} with few samples, {:.1e} with many", few.worst, many.worst);
     assert!(!few.is_broken() && many.is_broken(), "{few:?} {many:?}");
 
-    let (scaled, _folder) = mutant("return mix(diffuse, lobe, share);", "return 0.99 * mix(diffuse, lobe, share);");
+    let (scaled, _folder) = mutant("return mix(cosine_pdf(", "return 0.99 * mix(cosine_pdf(");
     let few = of_ward(&scaled, 30_000);
     println!("1 % of the density: p {:.1e}", few.worst);
     assert!(few.is_broken(), "{few:?}");

@@ -15,7 +15,9 @@ mod permutations;
 mod probe;
 mod render;
 mod report;
+mod sheet;
 mod show;
+mod table;
 mod text;
 mod timings;
 mod tree;
@@ -80,10 +82,14 @@ enum Command {
     Permutations(permutations::Options),
     /// Draws a scene into a PNG (displayed) or EXR (linear, cd/m2) file
     Render(render::Options),
+    /// Draws a scene with every choice of a space into one picture (*.png), labelled
+    Sheet(sheet::Options),
     /// Evaluates an interface function on the GPU over a table of inputs
     Probe(probe::Options),
     /// Compares modules: speed against error, over experiments that the library declares
     Report(report::Options),
+    /// Writes the numbers that fill a module's buffer, as little-endian 32-bit floats
+    Table(table::Options),
     /// Makes the skeleton of a module's folder
     New(new::Options),
 }
@@ -138,7 +144,9 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Diff(options) => diff::run(&context(&arguments.modules)?, &options),
         Command::Permutations(options) => permutations::run(&context(&arguments.modules)?, &options),
         Command::Render(options) => render::run(context(&arguments.modules)?, &options),
+        Command::Sheet(options) => sheet::run(context(&arguments.modules)?, &options),
         Command::Report(options) => report::run(&context(&arguments.modules)?, &options),
+        Command::Table(options) => table::run(&context(&arguments.modules)?, &options),
         Command::Probe(options) => probe::run(&context(&arguments.modules)?, &options),
     }
 }

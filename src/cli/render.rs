@@ -54,7 +54,11 @@ enum Kind {
     Exr,
 }
 
-fn size(typed: &str) -> Result<[u32; 2], String> {
+/// Width and height as typed, 960x540.
+///
+/// # Errors
+/// They are not two whole numbers.
+pub fn size(typed: &str) -> Result<[u32; 2], String> {
     let sides = typed.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     sides.ok_or_else(|| "should be like 960x540".to_owned())
 }
@@ -72,13 +76,7 @@ pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
             return Err(Failure::Usage(format!("{}: a picture's name ends in .png or .exr", name.display())));
         }
     };
-    let mut scene = read(&options.scene)?;
-    for typed in &options.set {
-        let Some((path, value)) = typed.split_once('=') else {
-            return Err(Failure::Usage(format!("--set {typed}: should be PATH=VALUE")));
-        };
-        scene = scene.set(path.trim(), value.trim())?;
-    }
+    let scene = read(&options.scene, &options.set)?;
     let mut frame = scene.frame(&context.catalog, options.size)?;
     if options.needs {
         return needs::say(&context.catalog, &frame, context.format);
@@ -129,14 +127,25 @@ fn write(gpu: &Gpu, frame: &Frame, targets: &Targets, output: &Path) -> Result<(
     outputs.commit()
 }
 
-fn read(path: &Path) -> Result<SceneFile, Failure> {
+/// A scene with some of its values changed, each as `PATH=VALUE`.
+///
+/// # Errors
+/// What is typed is no such pair, a path leads nowhere, or the file is no scene.
+pub fn read(path: &Path, set: &[String]) -> Result<SceneFile, Failure> {
     let text = input::text(path)?;
     let name = if path == Path::new("-") {
         "standard input".into()
     } else {
         path.to_string_lossy()
     };
-    Ok(SceneFile::parse(&name, &text, path.parent().unwrap_or(Path::new("")))?)
+    let mut scene = SceneFile::parse(&name, &text, path.parent().unwrap_or(Path::new("")))?;
+    for typed in set {
+        let Some((path, value)) = typed.split_once('=') else {
+            return Err(Failure::Usage(format!("--set {typed}: should be PATH=VALUE")));
+        };
+        scene = scene.set(path.trim(), value.trim())?;
+    }
+    Ok(scene)
 }
 
 /// Derives a scene's recipes and links them.
@@ -144,7 +153,7 @@ fn read(path: &Path) -> Result<SceneFile, Failure> {
 /// # Errors
 /// What is wrong with the scene.
 pub fn check(context: &Context, path: &Path) -> Result<(), Failure> {
-    let frame = read(path)?.frame(&context.catalog, None)?;
+    let frame = read(path, &[])?.frame(&context.catalog, None)?;
     let mut recipes: Vec<&Node> = Vec::new();
     for material in frame.materials.iter().chain(&frame.display) {
         let recipe = material.recipe.as_ref();

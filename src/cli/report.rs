@@ -130,7 +130,7 @@ fn properties(context: &Context, path: &Path, quick: bool) -> Result<(), Failure
         let mut combined = Vec::new();
         for role in &roles {
             for name in &role.declared.combinations {
-                combined.push(proofs::combinations(&bench, &roles, role, name, &effort)?);
+                combined.push(proofs::combinations(&bench, role, name, &effort)?);
             }
         }
         Ok((found, combined))

@@ -150,9 +150,12 @@ impl Rows {
     }
 }
 
-/// A surface whose normal is z and whose tangent is x.
+/// A surface whose normal is z and whose tangent is x; what lies on it and below it is as rough.
 pub(super) fn surface(alpha: f64, widths: [f64; 2], f0: [f64; 3], diffuse: [f64; 3]) -> Json {
-    json!({"alpha": alpha, "widths": widths, "f0": f0, "diffuse": diffuse, "normal": [0, 0, 1], "tangent": [1, 0, 0]})
+    json!({
+        "alpha": alpha, "widths": widths, "f0": f0, "diffuse": diffuse, "normal": [0, 0, 1], "tangent": [1, 0, 0],
+        "diffuse_roughness": alpha.sqrt(), "coat_alpha": alpha, "fuzz_roughness": alpha.sqrt(),
+    })
 }
 
 /// The module with its defaults, and with each number among its parameters at either end of its range: what is said of it holds there too.

@@ -39,7 +39,7 @@ pub struct Combinations {
     pub samplers: usize,
     /// Combinations of which every pair of alternatives is one, evaluated on the device too.
     pub on_device: usize,
-    /// Combinations that must be reciprocal by their parts' claims.
+    /// Combinations whose root and parts, where they can, all claim to be reciprocal.
     pub reciprocal: usize,
     /// Largest relative difference of what must be reciprocal, and of which.
     pub worst: (f64, String),
@@ -75,7 +75,7 @@ struct Trial<'a> {
     catalog: &'a Catalog,
     reflectance: &'a str,
     draws: &'a Draws,
-    /// Categories whose functions take two directions.
+    /// Categories in which somebody claims to be reciprocal: of the others it means nothing.
     directed: BTreeSet<&'a str>,
     rows: [Rows; 2],
     numbers: Vec<[f32; 2]>,
@@ -86,7 +86,7 @@ struct Trial<'a> {
 ///
 /// # Errors
 /// The space is too large, the device fails, or somebody asked to stop. A combination that does not link is a fault.
-pub fn combinations(bench: &Bench, roles: &[Roles], role: &Roles, name: &str, effort: &Effort) -> Result<Combinations, MeasureError> {
+pub fn combinations(bench: &Bench, role: &Roles, name: &str, effort: &Effort) -> Result<Combinations, MeasureError> {
     let module = format!("{}/{name}", role.category);
     let (Some(reflectance), Some(draws)) = (&role.declared.reflectance, &role.declared.draws) else {
         return Ok(Combinations::default());
@@ -98,10 +98,11 @@ pub fn combinations(bench: &Bench, roles: &[Roles], role: &Roles, name: &str, ef
         catalog: bench.catalog,
         reflectance,
         draws,
-        directed: roles
-            .iter()
-            .filter(|r| r.declared.reflectance.is_some() || r.declared.masking.is_some())
-            .map(|r| r.category.as_str())
+        directed: bench
+            .catalog
+            .modules()
+            .filter(|m| m.manifest.properties.iter().any(|p| p == Property::Reciprocal.claim()))
+            .map(|m| m.category.as_str())
             .collect(),
         rows: pairs::some(PAIRS),
         numbers: (0..DRAWN).map(|_| [random.single(), random.single()]).collect(),
@@ -197,7 +198,7 @@ impl Trial<'_> {
         if let Some(value) = values.iter().chain(&swapped).flatten().find(|x| !(x.is_finite() && **x >= 0.0)) {
             tried.faults.push(format!("is {value}"));
         }
-        if self.must_be_reciprocal(node)? {
+        if self.must_be_reciprocal(&node.module, node)? {
             let relative = |(a, b): (&f64, &f64)| (a - b).abs() / a.abs().max(b.abs()).max(1e-9);
             let difference = values.iter().flatten().zip(swapped.iter().flatten()).map(relative).fold(0.0, f64::max);
             if difference > EQUAL {
@@ -222,20 +223,22 @@ impl Trial<'_> {
         Ok(())
     }
 
-    /// Whether the root and all parts that see both directions claim it.
-    fn must_be_reciprocal(&self, node: &Node) -> Result<bool, Report> {
-        let module = self.catalog.module(&node.module)?;
+    /// Whether the root and all parts that can claim it do; `name` is the node's with its category.
+    fn must_be_reciprocal(&self, name: &str, node: &Node) -> Result<bool, Report> {
+        let module = self.catalog.module(name)?;
         let claims = module.manifest.properties.iter().any(|p| p == Property::Reciprocal.claim());
         if self.directed.contains(module.category.as_str()) && !claims {
             return Ok(false);
         }
-        for filling in node.fill.values() {
+        for (slot, filling) in &node.fill {
             let nodes = match filling {
                 Filling::One(node) => std::slice::from_ref(node),
                 Filling::Many(nodes) => nodes,
             };
             for node in nodes {
-                if !self.must_be_reciprocal(node)? {
+                let interface = module.manifest.slots.get(slot).map_or("", |slot| &slot.interface);
+                let bare = node.module.rsplit('/').next().unwrap_or_default();
+                if !self.must_be_reciprocal(&format!("{interface}/{bare}"), node)? {
                     return Ok(false);
                 }
             }

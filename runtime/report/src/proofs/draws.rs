@@ -20,10 +20,11 @@ use crate::measure::{MeasureError, Random};
 const BINS: [usize; 2] = [32, 32];
 /// Bins in each direction that are one in the coarse test.
 const MERGED: usize = 4;
-/// Strata of a bin's integral in each direction, with a random point in each: the integral has an error, which is known.
-const POINTS: usize = 8;
+/// Strata of a bin's integral in each direction, with a random point in each: the integral has an error, which is known. With 8 a corner that a
+/// density only just reaches is missed, which a million samples show.
+const POINTS: usize = 16;
 /// The same where the density changes much in a bin.
-const MORE_POINTS: usize = 32;
+const MORE_POINTS: usize = 48;
 /// How large the variance of a bin's integral may be beside that of its count, before more points are taken.
 const VARIANCE: f64 = 0.05;
 /// Probability by which all tests together may fail a correct library.

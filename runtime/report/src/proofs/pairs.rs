@@ -106,6 +106,9 @@ fn rows(pairs: &[Pair], takes_half: bool) -> Rows {
     let across = |(step, pair): (usize, &Pair)| if step % 2 == 0 { pair.alpha } else { (0.5 * pair.alpha).max(1e-4) };
     let rows = Rows::new(&surface(1.0, [1.0; 2], [0.04, 0.5, 1.0], [1.0, 0.5, 0.0]))
         .numbers("s.alpha", pairs.iter().map(|p| p.alpha))
+        .numbers("s.coat_alpha", pairs.iter().map(|p| p.alpha))
+        .numbers("s.diffuse_roughness", pairs.iter().map(|p| p.alpha.sqrt()))
+        .numbers("s.fuzz_roughness", pairs.iter().map(|p| p.alpha.sqrt()))
         .numbers("s.widths.x", pairs.iter().map(|p| p.alpha))
         .numbers("s.widths.y", pairs.iter().enumerate().map(across))
         .vectors("s.normal", pairs.iter().map(|p| p.frame.z_axis))

@@ -212,6 +212,14 @@ fn embedded(raster: &Raster) -> Result<String, WriteError> {
 /// # Errors
 /// See [`WriteError`].
 pub fn png(drawing: &Drawing) -> Result<Vec<u8>, WriteError> {
+    encoded(&painted(drawing)?)
+}
+
+/// The pixels of [`png`].
+///
+/// # Errors
+/// See [`WriteError`].
+pub fn painted(drawing: &Drawing) -> Result<RgbImage, WriteError> {
     let [wide, high] = [drawing.width * UNITS, drawing.height * UNITS];
     let mut fine = RgbImage::from_pixel(wide, high, image::Rgb(Colour::Paper.rgb()));
     for raster in &drawing.rasters {
@@ -231,10 +239,12 @@ pub fn png(drawing: &Drawing) -> Result<Vec<u8>, WriteError> {
         paint(&area, &drawing.marks, DROP).map_err(failed)?;
         area.present().map_err(failed)?;
     }
-    encoded(&imageops::thumbnail(&fine, drawing.width * DENSITY, drawing.height * DENSITY))
+    Ok(imageops::thumbnail(&fine, drawing.width * DENSITY, drawing.height * DENSITY))
 }
 
-fn encoded(image: &RgbImage) -> Result<Vec<u8>, WriteError> {
+/// # Errors
+/// See [`WriteError`].
+pub fn encoded(image: &RgbImage) -> Result<Vec<u8>, WriteError> {
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, ImageFormat::Png)?;
     Ok(bytes.into_inner())
