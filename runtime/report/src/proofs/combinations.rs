@@ -49,13 +49,13 @@ pub struct Combinations {
     pub faults: Vec<String>,
 }
 
-/// The space of a module's fillings; a new module that fits is in it by being there.
+/// The space of a module's fillings, whose own slots have their defaults; a new module that fits is in it by being there.
 ///
 /// # Errors
 /// The module is not there, or has too many fillings.
 pub fn space(catalog: &Catalog, module: &str) -> Result<Space, Report> {
     let manifest = &catalog.module(module)?.manifest;
-    let fill: Vec<String> = manifest.slots.keys().map(|slot| format!("{slot:?}: (fits: Open)")).collect();
+    let fill: Vec<String> = manifest.slots.keys().map(|slot| format!("{slot:?}: (fits: Defaults)")).collect();
     let text = format!("(module: {module:?}, fill: {{{}}})", fill.join(", "));
     Space::open(catalog, &SpaceFile::parse("combinations", &text)?)
 }
