@@ -226,6 +226,8 @@ const HOMONYMS: &[(&str, &str, &str)] = &[
     ("runtime/src", "display", "the scene's field, and the frame's image"),
     ("runtime/src", "forward", "a member of the interface's struct for views"),
     ("runtime/src", "perspective", "a member of the same"),
+    ("runtime/src", "merl", "a format of files"),
+    ("runtime/src", "rgl", "a format of files"),
     ("runtime/report/src", "hard", "a field of experiments"),
     ("runtime/report/src", "light", "a colour of the page's theme"),
 ];

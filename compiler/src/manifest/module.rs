@@ -96,6 +96,10 @@ pub enum Arity {
 }
 
 /// What fills a slot: one node, or a list of them.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "nearly all are one node: a box would only cost each an allocation"
+)]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Filling {

@@ -25,11 +25,12 @@ fn facet_albedo(s: Surface, cosine: f32) -> vec3f {
     let low = mix(albedo[at], albedo[at + 1u], x - f32(i));
     let high = mix(albedo[at + SIDE], albedo[at + SIDE + 1u], x - f32(i));
     let found = mix(low, high, y - f32(j));
+    let lost = found.x * found.x;
     let c = 1.0 - m;
     let c2 = c * c;
     // Level facets would have c^5 of what is not lost; the table has the rest.
-    let b = (1.0 - found.x) * (c2 * c2 * c) + found.y;
-    return vec3f(1.0 - found.x - b, b, found.x);
+    let b = (1.0 - lost) * (c2 * c2 * c) + found.y;
+    return vec3f(1.0 - lost - b, b, lost);
 }
 
 /// Between two neighbours. The lost share falls with alpha^2, which the table has divided out.
