@@ -59,7 +59,9 @@ fn others_take_the_cover() {
     let space = proofs::space(catalog(), "brdf/microfacet").unwrap_or_else(|report| panic!("{report}"));
     let (mut taken, mut tinted) = (0, 0);
     for permutation in space.pairwise().unwrap() {
-        let program = catalog().compile_probe(&permutation.recipe, "brdf").unwrap_or_else(|report| panic!("{report}"));
+        let program = catalog()
+            .compile_probe(&permutation.recipe, "brdf")
+            .unwrap_or_else(|report| panic!("{report}"));
         naga_takes(program.wgsl()).unwrap_or_else(|error| panic!("{error}\n{}", program.wgsl()));
         taken += 1;
         if let Some(verdict) = tint(program.wgsl()) {
@@ -108,8 +110,18 @@ fn a_bad_part_is_found_in_every_combination() {
     assert!(faults("lopsided: is not reciprocal") >= distributions);
     assert!(faults("holed: is NaN") >= distributions);
     assert!(faults("narrow") > catalog.fits("diffuse").len());
-    assert!(found.faults.iter().any(|fault| fault.contains("narrow") && fault.contains("draws with p")));
-    assert!(found.faults.iter().all(|fault| fault.contains("lopsided") || fault.contains("holed") || fault.contains("narrow")));
+    assert!(
+        found
+            .faults
+            .iter()
+            .any(|fault| fault.contains("narrow") && fault.contains("draws with p"))
+    );
+    assert!(
+        found
+            .faults
+            .iter()
+            .all(|fault| fault.contains("lopsided") || fault.contains("holed") || fault.contains("narrow"))
+    );
 }
 
 /// The standard library with few masking and Fresnel terms, so that it does not take long.

@@ -34,7 +34,10 @@ fn claimed_properties_hold() {
     let found = proved(catalog(), &|_| true);
     for proof in &found {
         let said = if proof.claimed { "" } else { ", not claimed" };
-        println!("{:<40} {:<14?} {:.3e}{said}: {}", proof.module, proof.property, proof.worst, proof.at);
+        println!(
+            "{:<40} {:<14?} {:.3e}{said}: {}",
+            proof.module, proof.property, proof.worst, proof.at
+        );
     }
     let broken: Vec<&Proof> = found.iter().filter(|proof| proof.is_broken()).collect();
     assert!(broken.is_empty(), "{broken:#?}");
@@ -73,18 +76,31 @@ fn mutated(path: &str, from: &str, to: &str) -> String {
 fn is_broken(catalog: &Catalog, module: &str, property: Property) {
     let found = proved(catalog, &|name| name == module);
     let broken: Vec<Property> = found.iter().filter(|p| p.is_broken()).map(|p| p.property).collect();
-    assert!(broken.contains(&property), "{module}: {property:?} is not among {broken:?}: {found:#?}");
+    assert!(
+        broken.contains(&property),
+        "{module}: {property:?} is not among {broken:?}: {found:#?}"
+    );
 }
 
 /// Catches checks that let anything pass: each claim is made by a reflectance that does not keep it.
 #[test]
 fn false_claims_fail() {
     let cases = [
-        ("lopsided", "reciprocal", "INV_PI * (1.0 + 1e-4 * dot(s.normal, v))", Property::Reciprocal),
+        (
+            "lopsided",
+            "reciprocal",
+            "INV_PI * (1.0 + 1e-4 * dot(s.normal, v))",
+            Property::Reciprocal,
+        ),
         ("brushed", "isotropic", "INV_PI * (1.0 + 1e-3 * l.x * l.x)", Property::Isotropic),
         ("bright", "energy_conserving", "INV_PI * 1.002", Property::Energy),
         ("dark", "reciprocal", "INV_PI * (dot(s.normal, v) - 1e-6)", Property::NotNegative),
-        ("grazing", "reciprocal", "INV_PI / max(dot(s.normal, v) - 2e-4, 0.0)", Property::Finite),
+        (
+            "grazing",
+            "reciprocal",
+            "INV_PI / max(dot(s.normal, v) - 2e-4, 0.0)",
+            Property::Finite,
+        ),
     ];
     let texts: Vec<(String, String, String)> = cases
         .iter()
@@ -100,7 +116,10 @@ fn false_claims_fail() {
         .iter()
         .flat_map(|(folder, manifest, wgsl)| {
             let name = Path::new(folder).file_name().unwrap().to_str().unwrap();
-            [(format!("{folder}/module.ron"), manifest.as_str()), (format!("{folder}/{name}.wgsl"), wgsl.as_str())]
+            [
+                (format!("{folder}/module.ron"), manifest.as_str()),
+                (format!("{folder}/{name}.wgsl"), wgsl.as_str()),
+            ]
         })
         .collect();
     let files: Vec<(&str, &str)> = files.iter().map(|(path, text)| (path.as_str(), *text)).collect();
@@ -115,12 +134,20 @@ fn false_claims_fail() {
 #[test]
 fn wrong_facets_fail() {
     let ggx = "ndf/ggx/ggx.wgsl";
-    let changed = mutated(ggx, "return select(0.0, k * k * INV_PI, cosine > 0.0);", "return select(0.0, k * k * INV_PI * 1.001, cosine > 0.0);");
+    let changed = mutated(
+        ggx,
+        "return select(0.0, k * k * INV_PI, cosine > 0.0);",
+        "return select(0.0, k * k * INV_PI * 1.001, cosine > 0.0);",
+    );
     is_broken(&with(&[(ggx, &changed)]).1, "ndf/ggx", Property::Normalised);
 
     let smith = "masking/smith-ggx-correlated/smith-ggx-correlated.wgsl";
     let changed = mutated(smith, "let a2 = s.alpha * s.alpha;", "let a2 = 1.01 * s.alpha * s.alpha;");
-    is_broken(&with(&[(smith, &changed)]).1, "masking/smith-ggx-correlated", Property::ProjectedArea);
+    is_broken(
+        &with(&[(smith, &changed)]).1,
+        "masking/smith-ggx-correlated",
+        Property::ProjectedArea,
+    );
 
     let changed = mutated(ggx, "return 2.0 * max(dot(v, h), 0.0)", "return 1.98 * max(dot(v, h), 0.0)");
     is_broken(&with(&[(ggx, &changed)]).1, "ndf/ggx", Property::Weight);

@@ -59,7 +59,10 @@ fn one_per_cent_is_seen() {
 
     let (shifted, _folder) = mutant("let share = lobe_share(", "let share = 1.01 * lobe_share(");
     let (few, many) = (of_ward(&shifted, 30_000), of_ward(&shifted, SAMPLES));
-    println!("1 % of the lobe: p {:.1e} with few samples, {:.1e} with many", few.worst, many.worst);
+    println!(
+        "1 % of the lobe: p {:.1e} with few samples, {:.1e} with many",
+        few.worst, many.worst
+    );
     assert!(!few.is_broken() && many.is_broken(), "{few:?} {many:?}");
 
     let (scaled, _folder) = mutant("return mix(cosine_pdf(", "return 0.99 * mix(cosine_pdf(");

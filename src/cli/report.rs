@@ -199,13 +199,27 @@ fn properties(context: &Context, path: &Path, quick: bool) -> Result<(), Failure
     if context.format == Format::Json {
         say_json(&serde_json::json!({"device": bench.device(), "proofs": found, "combinations": combined}))?;
     } else {
-        let line = |p: &&proofs::Proof| format!("broken: {}: {:?}: {:e}, bound {:e}, {}", p.module, p.property, p.worst, p.bound, p.at);
+        let line = |p: &&proofs::Proof| {
+            format!(
+                "broken: {}: {:?}: {:e}, bound {:e}, {}",
+                p.module, p.property, p.worst, p.bound, p.at
+            )
+        };
         let mut lines: Vec<String> = broken.iter().map(line).collect();
         lines.extend(faults.iter().map(|fault| format!("broken: {fault}")));
-        lines.push(format!("{} properties measured, {} broken: {}", found.len(), lines.len(), path.display()));
+        lines.push(format!(
+            "{} properties measured, {} broken: {}",
+            found.len(),
+            lines.len(),
+            path.display()
+        ));
         say(&lines.join("\n"))?;
     }
-    if broken.is_empty() && faults.is_empty() { Ok(()) } else { Err(Failure::Said) }
+    if broken.is_empty() && faults.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Said)
+    }
 }
 
 fn measure_failure(error: MeasureError, kept: String) -> Failure {
@@ -219,7 +233,10 @@ fn measure_failure(error: MeasureError, kept: String) -> Failure {
 
 fn failure(error: ReportError, options: &Options) -> Failure {
     let folder = options.output.join(DONE);
-    let kept = format!("what was measured is kept in {}; the same command goes on from there", folder.display());
+    let kept = format!(
+        "what was measured is kept in {}; the same command goes on from there",
+        folder.display()
+    );
     match error {
         ReportError::Measure(error) => measure_failure(error, kept),
         other => Failure::message(other.to_string()),

@@ -17,7 +17,9 @@ fn what_is_not_there_is_located() {
     combinations: ["microfact"],
 )
 "#;
-    let found = read(&catalog, "brdf", "brdf/brdf.proofs.ron", text).expect_err("it is wrong").render();
+    let found = read(&catalog, "brdf", "brdf/brdf.proofs.ron", text)
+        .expect_err("it is wrong")
+        .render();
     let expected = r#"
 error[SW1101]: `brdf` has no function `brdf_pfd`
   --> brdf/brdf.proofs.ron:3:45

@@ -109,8 +109,18 @@ pub fn prove(bench: &Bench, module: &Module, function: &str) -> Result<Vec<Proof
     let mut settings = Vec::new();
     for (f0, alpha) in F0.into_iter().flat_map(|f0| ALPHAS.map(|alpha| (f0, alpha))) {
         for polar in ANGLES {
-            settings.push(White { f0, widths: [alpha; 2], polar, turn: 0.0 });
-            let brushed = |turn| White { f0, widths: [alpha, 0.5 * alpha], polar, turn };
+            settings.push(White {
+                f0,
+                widths: [alpha; 2],
+                polar,
+                turn: 0.0,
+            });
+            let brushed = |turn| White {
+                f0,
+                widths: [alpha, 0.5 * alpha],
+                polar,
+                turn,
+            };
             if !is_isotropic {
                 settings.extend(TURNS.map(brushed));
             }
@@ -151,7 +161,12 @@ mod tests {
     fn the_nodes_cover_the_hemisphere() {
         for polar in ANGLES {
             for widths in [[0.05, 0.05], [1.0, 0.5]] {
-                let setting = White { f0: 1.0, widths, polar, turn: 45.0 };
+                let setting = White {
+                    f0: 1.0,
+                    widths,
+                    polar,
+                    turn: 45.0,
+                };
                 let sum: f64 = setting.directions(1).iter().map(|(_, weight)| weight).sum();
                 assert!((sum / PI - 1.0).abs() < 2e-4, "{polar} {widths:?}: {}", sum / PI);
                 assert!(setting.directions(1).iter().all(|(l, _)| (l.length() - 1.0).abs() < 1e-12));

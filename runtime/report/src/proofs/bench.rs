@@ -36,7 +36,9 @@ impl<'a> Bench<'a> {
 
     /// The device's name and driver.
     pub fn device(&self) -> String {
-        self.device.as_ref().map_or_else(|| "evaluator, f32".to_owned(), |(gpu, _)| gpu.name())
+        self.device
+            .as_ref()
+            .map_or_else(|| "evaluator, f32".to_owned(), |(gpu, _)| gpu.name())
     }
 
     pub(super) fn probe(&self, node: &Node, function: &str) -> Result<Rc<Probe>, MeasureError> {
@@ -57,7 +59,11 @@ impl<'a> Bench<'a> {
         let mut values = Vec::with_capacity(rows.len());
         for start in (0..rows.len()).step_by(CHUNK) {
             let end = rows.len().min(start + CHUNK);
-            let columns: Vec<(&str, &[f32])> = rows.columns.iter().map(|(name, column)| (name.as_str(), &column[start..end])).collect();
+            let columns: Vec<(&str, &[f32])> = rows
+                .columns
+                .iter()
+                .map(|(name, column)| (name.as_str(), &column[start..end]))
+                .collect();
             let table = probe.varied(&base, &columns)?;
             values.extend(match &self.device {
                 Some((gpu, pipelines)) => probe.on_gpu(pipelines, gpu, &table)?,
@@ -116,7 +122,8 @@ impl Rows {
             self.base.insert(name.to_owned(), json!([0, 0, 1]));
         }
         for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
-            self.columns.push((format!("{name}.{letter}"), vectors.clone().map(|v| v[axis] as f32).collect()));
+            self.columns
+                .push((format!("{name}.{letter}"), vectors.clone().map(|v| v[axis] as f32).collect()));
         }
         self
     }
@@ -125,7 +132,8 @@ impl Rows {
     pub fn pairs(mut self, name: &str, pairs: &[[f32; 2]]) -> Self {
         self.base.insert(name.to_owned(), json!([0, 0]));
         for (axis, letter) in ["x", "y"].into_iter().enumerate() {
-            self.columns.push((format!("{name}.{letter}"), pairs.iter().map(|p| p[axis]).collect()));
+            self.columns
+                .push((format!("{name}.{letter}"), pairs.iter().map(|p| p[axis]).collect()));
         }
         self
     }
@@ -163,7 +171,9 @@ pub(super) fn variants(module: &Module) -> Vec<(String, Node)> {
     let plain = Node::new(format!("{}/{}", module.category, module.name));
     let mut found = vec![(String::new(), plain.clone())];
     for (name, param) in &module.manifest.params {
-        let (Some((low, high)), ParamType::F32) = (param.range, param.ty) else { continue };
+        let (Some((low, high)), ParamType::F32) = (param.range, param.ty) else {
+            continue;
+        };
         for value in [low, high] {
             let mut node = plain.clone();
             node.freeze.insert(name.clone(), Value::Number(value));

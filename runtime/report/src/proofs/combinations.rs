@@ -121,7 +121,9 @@ pub fn combinations(bench: &Bench, role: &Roles, name: &str, effort: &Effort) ->
         }
         let tried: Vec<Tried> = chunk.par_iter().map(|node| trial.run(node)).collect();
         for (node, tried) in chunk.iter().zip(tried) {
-            found.faults.extend(tried.faults.into_iter().map(|fault| format!("{}: {fault}", label(node))));
+            found
+                .faults
+                .extend(tried.faults.into_iter().map(|fault| format!("{}: {fault}", label(node))));
             programs.insert(tried.program);
             samplers.entry(tried.sampler).or_insert(node);
             if let Some(difference) = tried.difference {
@@ -200,7 +202,12 @@ impl Trial<'_> {
         }
         if self.must_be_reciprocal(&node.module, node)? {
             let relative = |(a, b): (&f64, &f64)| (a - b).abs() / a.abs().max(b.abs()).max(1e-9);
-            let difference = values.iter().flatten().zip(swapped.iter().flatten()).map(relative).fold(0.0, f64::max);
+            let difference = values
+                .iter()
+                .flatten()
+                .zip(swapped.iter().flatten())
+                .map(relative)
+                .fold(0.0, f64::max);
             if difference > EQUAL {
                 tried.faults.push(format!("is not reciprocal: {difference:.1e}"));
             }

@@ -260,7 +260,12 @@ pub fn prove(bench: &Bench, module: &Module, draws: &Draws, mirrors: bool, sampl
 /// # Errors
 /// As for [`prove`].
 pub(super) fn of_recipe(bench: &Bench, node: &Node, draws: &Draws, mirrors: bool, samples: usize) -> Result<(f64, String), MeasureError> {
-    let sampler = Sampler { bench, node, draws, mirrors };
+    let sampler = Sampler {
+        bench,
+        node,
+        draws,
+        mirrors,
+    };
     let mut least = (f64::INFINITY, String::new());
     for setting in settings() {
         let (p, why) = sampler.p_value(&setting, samples)?;
@@ -311,7 +316,12 @@ mod tests {
     /// Catches a tail that is wrong: quantiles of tables (Abramowitz and Stegun 1964, table 26.8).
     #[test]
     fn chi_square_quantiles() {
-        for (degrees, statistic, expected) in [(10.0, 23.209, 0.01), (30.0, 50.892, 0.01), (100.0, 118.498, 0.1), (100.0, 82.358, 0.9)] {
+        for (degrees, statistic, expected) in [
+            (10.0, 23.209, 0.01),
+            (30.0, 50.892, 0.01),
+            (100.0, 118.498, 0.1),
+            (100.0, 82.358, 0.9),
+        ] {
             let p = chi_square(statistic, degrees);
             assert!((p / expected - 1.0).abs() < 0.02, "{degrees} {statistic}: {p}");
         }

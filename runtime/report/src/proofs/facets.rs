@@ -195,7 +195,11 @@ pub fn prove_weight(bench: &Bench, area: &Area, distribution: &str, masking: &st
                 .collect();
             let normals = || facets.iter().map(|(h, _)| *h);
             let density = bench.numbers(&of_facets, &draws.density, &shared().vectors(&draws.drawn, normals()))?;
-            let d = bench.numbers(&of_facets, distribution, &Rows::new(&smooth(alpha, isotropic)).vectors("h", normals()))?;
+            let d = bench.numbers(
+                &of_facets,
+                distribution,
+                &Rows::new(&smooth(alpha, isotropic)).vectors("h", normals()),
+            )?;
             let mirrored = shared().vectors("l", facets.iter().map(|(_, l)| *l)).vectors("h", normals());
             let masked = bench.numbers(&of_masking, masking, &mirrored)?;
             for ((((h, l), p), d), masked) in facets.iter().zip(density).zip(d).zip(masked) {

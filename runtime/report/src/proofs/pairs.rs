@@ -135,7 +135,11 @@ fn place(pair: &Pair, variant: &str) -> String {
     let polar = |d: DVec3| d.x.hypot(d.y).atan2(d.z).to_degrees();
     let turn = (l.y.atan2(l.x) - v.y.atan2(v.x)).rem_euclid(TAU).to_degrees();
     let tilted = if pair.frame == DMat3::IDENTITY { "" } else { ", tilted normal" };
-    let variant = if variant.is_empty() { String::new() } else { format!(", {variant}") };
+    let variant = if variant.is_empty() {
+        String::new()
+    } else {
+        format!(", {variant}")
+    };
     format!(
         "alpha {}, v {:.2}°, l {:.2}°, {turn:.0}° apart{tilted}{variant}",
         pair.alpha,
@@ -234,7 +238,12 @@ pub fn prove_share(bench: &Bench, module: &Module, function: &str) -> Result<Vec
             .vectors("s.f0", cases.iter().map(|(f0, _)| DVec3::splat(*f0)))
             .numbers("cosine", cases.iter().map(|(_, cosine)| *cosine));
         for (&(f0, cosine), value) in cases.iter().zip(bench.values(&node, function, &rows)?) {
-            let at = || format!("f0 {f0}, cosine {cosine:.3e}{}{variant}", if variant.is_empty() { "" } else { ", " });
+            let at = || {
+                format!(
+                    "f0 {f0}, cosine {cosine:.3e}{}{variant}",
+                    if variant.is_empty() { "" } else { ", " }
+                )
+            };
             for x in value {
                 if !x.is_finite() {
                     infinite = (infinite.0 + 1.0, at());

@@ -41,25 +41,40 @@ fn words(property: Property) -> (&'static str, &'static str) {
             "Largest relative difference when v and l are turned about the normal by a quarter, half of the surfaces having another width across the tangent.",
         ),
         Property::NotNegative => ("not negative", "Least value."),
-        Property::Finite => ("finite", "Values that are not finite, alpha from 1e-4, angles to 89.99 degrees, on and below the horizon."),
+        Property::Finite => (
+            "finite",
+            "Values that are not finite, alpha from 1e-4, angles to 89.99 degrees, on and below the horizon.",
+        ),
         Property::Share => ("share", "Largest value; no more than 1 is reflected."),
         Property::Energy => (
             "albedo",
             "Largest albedo of white surfaces (f0 and 1 - f0 of the diffuse part) by quadrature; ± is what twice as many nodes in each direction change.",
         ),
-        Property::Normalised => ("normalised", "Largest distance from 1 of the integral of D n.h over the hemisphere."),
+        Property::Normalised => (
+            "normalised",
+            "Largest distance from 1 of the integral of D n.h over the hemisphere.",
+        ),
         Property::ProjectedArea => (
             "projected area",
             "Largest relative distance of the area of the facets that v sees from that of the surface, with Smith's masking 4 n.v V(v, n).",
         ),
-        Property::Drawn => ("drawn as said", "Smallest probability among the chi-square tests of what is drawn against its density."),
-        Property::Weight => ("weight", "Largest weight f n.l / p of a sample; of pairs that of white facets, which is at most 1."),
+        Property::Drawn => (
+            "drawn as said",
+            "Smallest probability among the chi-square tests of what is drawn against its density.",
+        ),
+        Property::Weight => (
+            "weight",
+            "Largest weight f n.l / p of a sample; of pairs that of white facets, which is at most 1.",
+        ),
     }
 }
 
 /// A row for each module, a column for each property; in brackets what is not claimed.
 fn overview(proofs: &[Proof]) -> String {
-    let used: Vec<Property> = Property::ALL.into_iter().filter(|p| proofs.iter().any(|proof| proof.property == *p)).collect();
+    let used: Vec<Property> = Property::ALL
+        .into_iter()
+        .filter(|p| proofs.iter().any(|proof| proof.property == *p))
+        .collect();
     let mut modules: Vec<&str> = Vec::new();
     let mut cells: BTreeMap<(&str, Property), String> = BTreeMap::new();
     for proof in proofs {
@@ -81,10 +96,7 @@ fn overview(proofs: &[Proof]) -> String {
         "---|".repeat(used.len() + 1)
     );
     for module in modules {
-        let row: Vec<String> = used
-            .iter()
-            .map(|p| cells.get(&(module, *p)).cloned().unwrap_or_default())
-            .collect();
+        let row: Vec<String> = used.iter().map(|p| cells.get(&(module, *p)).cloned().unwrap_or_default()).collect();
         text += &format!("| {} | {} |\n", cell(module), row.join(" | "));
     }
     text
@@ -96,16 +108,29 @@ fn section(property: Property, proofs: &[&Proof]) -> String {
         Property::Drawn => format!(" The tests together fail a correct library with the probability {SIGNIFICANCE}."),
         _ => String::new(),
     };
-    let mut text = format!("\n## {title}\n\n{what}{bound}\n\n| module | claimed | worst | bound | holds | where |\n|---|---|---|---|---|---|\n");
+    let mut text =
+        format!("\n## {title}\n\n{what}{bound}\n\n| module | claimed | worst | bound | holds | where |\n|---|---|---|---|---|---|\n");
     for proof in proofs {
-        let bound = if proof.bound == f64::MAX { "finite".to_owned() } else { number(proof.bound) };
+        let bound = if proof.bound == f64::MAX {
+            "finite".to_owned()
+        } else {
+            number(proof.bound)
+        };
         let word = |is: bool| if is { "yes" } else { "no" };
         let cells = [
             cell(&proof.module),
             word(proof.claimed).to_owned(),
-            if property == Property::Energy { format!("{:.5}", proof.worst) } else { number(proof.worst) },
+            if property == Property::Energy {
+                format!("{:.5}", proof.worst)
+            } else {
+                number(proof.worst)
+            },
             bound,
-            if proof.is_broken() { "**no**".to_owned() } else { word(proof.holds()).to_owned() },
+            if proof.is_broken() {
+                "**no**".to_owned()
+            } else {
+                word(proof.holds()).to_owned()
+            },
             cell(&proof.at),
         ];
         text += &format!("| {} |\n", cells.join(" | "));
