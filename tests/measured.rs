@@ -4,6 +4,7 @@
 
 mod common;
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use common::{catalog, gpu};
@@ -59,12 +60,12 @@ fn directions(count: usize) -> Vec<(DVec3, DVec3)> {
     // The golden ratio's multiples, and those of the plastic number's powers.
     let part = |i: usize, by: f64| (0.5 + i as f64 * by).fract();
     let pair = |i: usize| {
-        let v = direction(1.04 * part(i, 0.618_033_988_75).sqrt(), 6.283 * part(i, 0.754_877_666_25));
-        let m = direction(0.4 * part(i, 0.569_840_290_998), 6.283 * part(i, 0.856_674_883_855));
-        let l = if i % 2 == 0 {
+        let v = direction(1.04 * part(i, 0.618_033_988_75).sqrt(), TAU * part(i, 0.754_877_666_25));
+        let m = direction(0.4 * part(i, 0.569_840_290_998), TAU * part(i, 0.856_674_883_855));
+        let l = if i.is_multiple_of(2) {
             2.0 * v.dot(m) * m - v
         } else {
-            direction(1.04 * part(i, 0.324_717_957_245), 6.283 * part(i, 0.220_744_084_606))
+            direction(1.04 * part(i, 0.324_717_957_245), TAU * part(i, 0.220_744_084_606))
         };
         (v, l.normalize())
     };

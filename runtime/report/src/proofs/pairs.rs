@@ -59,7 +59,7 @@ fn pairs() -> Vec<Pair> {
         let alpha = ALPHAS[step % ALPHAS.len()];
         let v = upper(step, 0.819_172_513, 0.671_043_607);
         let mut l = upper(step, 0.549_700_478, 0.450_299_522);
-        if step / ALPHAS.len() % 2 == 0 {
+        if (step / ALPHAS.len()).is_multiple_of(2) {
             // Elsewhere the lobe of a smooth surface is 0.
             let slope = alpha * (-f64::ln(fraction(step, 0.324_717_957))).sqrt();
             let h = direction(slope.atan(), TAU * fraction(step, 0.450_299_522));
