@@ -164,20 +164,28 @@ fn slope_sample(s: Surface, widths: vec2f, u: vec2f) -> vec3f {
     return normalize(s.normal + s.tangent * slope.x + cross(s.normal, s.tangent) * slope.y);
 }
 
-/// Density over solid angle of the direction l into which such a half vector mirrors v: e^-slope^2 / (pi ax ay cos^3) with the Jacobian of
-/// the mirror 1 / (4 |v.h|) (Walter 2005), 1/sr.
+/// The mirror direction about such a half vector for this share of u.x, else a direction by the cosine.
+fn slope_lobe_sample(s: Surface, widths: vec2f, share: f32, v: vec3f, u: vec2f) -> vec3f {
+    if u.x < share {
+        return reflect(-v, slope_sample(s, widths, vec2f(u.x / share, u.y)));
+    }
+    return diffuse_sample(s.normal, u, share);
+}
+
+/// Density of `slope_lobe_sample`, 1/sr: e^-slope^2 / (pi ax ay cos^3) with the Jacobian of the mirror 1 / (4 |v.h|) (Walter 2005), and the cosine's.
 ///
 /// A half vector drawn on the far side of v gives l below the horizon, and there v + l points into the surface: so without a sign.
-fn slope_mirror_pdf(s: Surface, widths: vec2f, v: vec3f, l: vec3f) -> f32 {
+fn slope_lobe_pdf(s: Surface, widths: vec2f, share: f32, v: vec3f, l: vec3f) -> f32 {
     let h = v + l;
     let size = length(h);
+    let diffuse = cosine_pdf(s.normal, l);
     // Where l is opposite to v no half vector mirrors one into the other; f32 has no shorter sum of unit vectors but 0.
     if size < 1e-12 {
-        return 0.0;
+        return (1.0 - share) * diffuse;
     }
     // v.h = |v + l| / 2. Where cos is at its floor the exponential is 0.
     let cosine = max(abs(dot(s.normal, h)) / size, 1e-8);
-    return slope_density(s, widths, h) / (cosine * cosine * cosine) * 0.5 / size;
+    return mix(diffuse, slope_density(s, widths, h) / (cosine * cosine * cosine) * 0.5 / size, share);
 }
 
 // --- Facets as v sees them

@@ -37,21 +37,12 @@ fn cavities(n_dot_v: f32, n_dot_l: f32, h: vec3f) -> f32 {
     return 0.25 * min(1.0 / low, edge) / high;
 }
 
-/// Share of the samples that the lobe draws: by how much it reflects, seen from v.
-fn share_toward(s: Surface, v: vec3f) -> f32 {
-    return lobe_share(dielectric_reflectance(s.f0, dot(s.normal, v)), s.diffuse);
-}
-
-/// The mirror direction about a half vector whose slopes are normally distributed, which is Beckmann's D times its cosine, or a direction by the cosine.
+/// Facets by D n.h (Walter et al. 2007, eqs. 28 and 29), and the diffuse part: by how much both reflect, seen from v.
 fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
-    let share = share_toward(s, v);
-    if u.x < share {
-        return reflect(-v, slope_sample(s, vec2f(s.alpha), vec2f(u.x / share, u.y)));
-    }
-    return diffuse_sample(s.normal, u, share);
+    return slope_lobe_sample(s, vec2f(s.alpha), lobe_share(dielectric_reflectance(s.f0, dot(s.normal, v)), s.diffuse), v, u);
 }
 
-/// The half vector's density and the cosine's, each by its share, 1/sr.
+/// The density of that, 1/sr.
 fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
-    return mix(cosine_pdf(s.normal, l), slope_mirror_pdf(s, vec2f(s.alpha), v, l), share_toward(s, v));
+    return slope_lobe_pdf(s, vec2f(s.alpha), lobe_share(dielectric_reflectance(s.f0, dot(s.normal, v)), s.diffuse), v, l);
 }

@@ -22,8 +22,11 @@ fn stretch(cosine: f32, y: f32) -> vec2f {
 }
 
 /// Direction across the normal in which v lies; along the normal any, for there the lobe is round.
+///
+/// By way of the cross product, which lies in the surface however near v is to the normal: what is left of v without its part along the normal is there rounding,
+/// along the normal itself.
 fn toward(s: Surface, v: vec3f) -> vec3f {
-    return unit_or(v - s.normal * dot(s.normal, v), frame_of(s.normal)[0]);
+    return cross(unit_or(cross(s.normal, v - s.normal), frame_of(s.normal)[1]), s.normal);
 }
 
 /// Density of the lobe over the cosine, times pi: a^2 / |M l|^4, the cosine cancelled.

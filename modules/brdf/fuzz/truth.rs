@@ -48,7 +48,8 @@ fn density(normal: DVec3, v: DVec3, l: DVec3, y: f64) -> f64 {
     let a = y * (2.58126 * x + 0.813703 * y) / (1.0 + 0.310327 * x * x + 2.60994 * x * y);
     let b = (1.0 - x).sqrt() * (y - 1.0) * y.powi(3) / (0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y * y);
     // Along the normal there is no direction to lean to; M is round there.
-    let toward = (v - normal * normal.dot(v)).try_normalize().unwrap_or(normal.any_orthonormal_vector());
+    let across = normal.cross(v - normal).try_normalize().unwrap_or(normal.any_orthonormal_vector());
+    let toward = across.cross(normal).normalize();
     let frame = DMat3::from_cols(toward, normal.cross(toward), normal);
     let matrix = DMat3::from_cols(DVec3::new(a, 0.0, 0.0), DVec3::new(0.0, a, 0.0), DVec3::new(b, 0.0, 1.0));
     let moved = matrix * (frame.transpose() * l);

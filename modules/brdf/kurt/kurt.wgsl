@@ -18,21 +18,12 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     return s.diffuse * INV_PI + schlick(s.f0, 0.5 * size) * (0.5 * d / (size * attenuation));
 }
 
-/// Share of the samples that the lobe draws: by how much it reflects, seen from v.
-fn share_toward(s: Surface, v: vec3f) -> f32 {
-    return lobe_share(schlick(s.f0, dot(s.normal, v)), s.diffuse);
-}
-
-/// The mirror direction about a half vector whose slopes are normally distributed, which is Beckmann's D times its cosine, or a direction by the cosine.
+/// Half vectors by D n.h, as in the paper, and the diffuse part: by how much both reflect, seen from v.
 fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
-    let share = share_toward(s, v);
-    if u.x < share {
-        return reflect(-v, slope_sample(s, s.widths, vec2f(u.x / share, u.y)));
-    }
-    return diffuse_sample(s.normal, u, share);
+    return slope_lobe_sample(s, s.widths, lobe_share(schlick(s.f0, dot(s.normal, v)), s.diffuse), v, u);
 }
 
-/// The half vector's density and the cosine's, each by its share, 1/sr.
+/// The density of that, 1/sr.
 fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
-    return mix(cosine_pdf(s.normal, l), slope_mirror_pdf(s, s.widths, v, l), share_toward(s, v));
+    return slope_lobe_pdf(s, s.widths, lobe_share(schlick(s.f0, dot(s.normal, v)), s.diffuse), v, l);
 }

@@ -8,9 +8,12 @@ fn surface(at: Fragment) -> Surface {
     // Light comes from within the coat, where there is one.
     let ior = params.specular_ior / mix(1.0, params.coat_ior, params.coat_weight);
     let reflectance = min(params.specular_weight * f0_of_ior(ior), 1.0);
+    // What is matte below a coat is lit by itself: the coat reflects light back down to it, again and again.
+    let inner = inner_reflectance_of_ior(params.coat_ior);
+    let darkened = (1.0 - inner) / (1.0 - inner * base_color);
 
     var s = bare_surface(at, perturb(at.normal, at));
-    s.diffuse = base_color * (1.0 - metalness);
+    s.diffuse = base_color * mix(vec3f(1.0), darkened, params.coat_weight * params.coat_darkening) * (1.0 - metalness);
     s.diffuse_roughness = params.base_diffuse_roughness;
     s.f0 = mix(params.specular_color * reflectance, base_color * min(params.specular_weight, 1.0), metalness);
     // Below a reflectance of 2 % a boundary hardly has a horizon: without the factor, specular_weight 0 would leave a bright rim.

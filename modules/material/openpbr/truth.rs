@@ -1,8 +1,12 @@
 //! OpenPBR's parameters as albedo, reflectances, widths and layers.
 
+use std::f64::consts::FRAC_PI_2;
+
 use glam::{DVec2, DVec3};
 
 use crate::oracles::appearance::{Appearance, alpha, normal_reflectance, smallest_alpha};
+use crate::oracles::quadrature::nodes;
+use crate::oracles::reflection::fresnel_dielectric;
 use crate::oracles::{At, Truth};
 
 pub(super) const TRUTHS: &[(&str, Truth)] = &[("surface", surface)];
@@ -24,8 +28,11 @@ fn surface(at: &At) -> Vec<f64> {
     let q = 1.0 - at.param("specular_roughness_anisotropy");
     let along = (2.0 * roughness.powi(4) / (1.0 + q * q)).sqrt();
     let tint = at.param_vector("specular_color");
+    // Saunderson 1942: of what is scattered below the coat a share K is reflected back down, so that 1 - K of each pass leaves.
+    let inner = inner_reflectance(at.param("coat_ior"));
+    let darkened = (1.0 - inner) / (DVec3::ONE - color * inner);
     Appearance {
-        diffuse: color * (1.0 - metalness),
+        diffuse: color * (1.0 - metalness) * DVec3::ONE.lerp(darkened, coat * at.param("coat_darkening")),
         diffuse_roughness: at.param("base_diffuse_roughness"),
         f0: (tint * reflectance).lerp(color * metal, metalness),
         f90: (tint * (50.0 * reflectance).min(1.0)).lerp(DVec3::splat(metal), metalness),
@@ -44,4 +51,14 @@ fn surface(at: &At) -> Vec<f64> {
         ..Appearance::bare(at)
     }
     .numbers()
+}
+
+/// Share of light from all sides that a boundary reflects from within: the mean of Fresnel's equations from outside, by the conservation of
+/// radiance over the square of the index.
+fn inner_reflectance(ior: f64) -> f64 {
+    let mean: f64 = nodes(0.0, FRAC_PI_2, 8)
+        .iter()
+        .map(|&(theta, w)| w * fresnel_dielectric(1.0, ior, theta) * (2.0 * theta).sin())
+        .sum();
+    1.0 - (1.0 - mean) / (ior * ior)
 }

@@ -2,6 +2,7 @@
 //!
 //! A decoder turns the bytes of a format into 32-bit floats. [`FORMATS`] is the list of them; a module's manifest names one.
 
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -107,11 +108,14 @@ pub fn load(data: &Data) -> Result<Arc<[f32]>, Diagnostic> {
     }
 }
 
-/// The numbers of every binding of kind `Data` that a program has, by group and binding.
+/// Numbers by group and binding.
+pub type Tables = HashMap<(u32, u32), Arc<[f32]>>;
+
+/// The numbers of every binding of kind `Data` that a program has.
 ///
 /// # Errors
 /// As for [`load`].
-pub fn load_all(program: &Program) -> Result<Vec<((u32, u32), Arc<[f32]>)>, Diagnostic> {
+pub fn load_all(program: &Program) -> Result<Tables, Diagnostic> {
     let bindings = program.reflection().bindings.iter();
     bindings
         .filter_map(|binding| Some(((binding.group, binding.binding), program.data(binding)?)))

@@ -61,6 +61,7 @@ pub struct Sample {
 }
 
 /// A table of either format.
+#[allow(clippy::large_enum_variant, reason = "one exists for a file, and its numbers are elsewhere")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Measured {
     /// Matusik et al. 2003.
