@@ -126,7 +126,7 @@ fn the_error_of_a_merl_table_falls_with_its_cells_size_squared() {
 fn the_error_of_an_rgl_table_falls_with_its_cells_size() {
     let catalog = catalog();
     let errors = [[1, 6, 12], [1, 12, 24], [1, 24, 48]].map(|sizes| errors(catalog, "rgl", &along_the_lobe(sizes)));
-    assert_converges("rgl", &errors, 2.5, 1e-2);
+    assert_converges("rgl", &errors, 2.0, 1e-2);
 }
 
 /// Catches azimuths of an anisotropic table that are not those of the surface, or a half of the circle that is folded the wrong way: an isotropic
