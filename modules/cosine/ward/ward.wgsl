@@ -4,3 +4,8 @@ var<storage> table: array<vec2f, 3072>;
 fn cosine_pair(k: u32) -> vec2f {
     return table[k];
 }
+
+/// Ward's BRDF is scaled, not refracted.
+fn cosine_fresnel() -> f32 {
+    return 0.0;
+}

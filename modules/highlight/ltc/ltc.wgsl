@@ -56,6 +56,6 @@ fn highlight(i: u32, s: Surface, v: vec3f) -> vec3f {
     let factor = shape_form_factor(i, s.position, transpose(mat3x3f(first, y, third)));
     // The table's second integral is B less what level facets would have.
     let c = 1.0 - m;
-    let grazing = cell.integrals.x * (c * c) * (c * c) * c + cell.integrals.y;
+    let grazing = cosine_fresnel() * cell.integrals.x * (c * c) * (c * c) * c + cell.integrals.y;
     return shape_luminance(i) * (s.f0 * cell.integrals.x + (1.0 - s.f0) * grazing) * factor;
 }

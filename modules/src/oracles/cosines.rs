@@ -121,7 +121,8 @@ impl Cosine {
     /// length is nothing to directions. What is left is divided by what it vanishes with: the third row by alpha, the two numbers that mix
     /// x and z by alpha sin(theta), and the two others by alpha + cos(theta). A smooth surface's lobe is 2 alpha wide, and 2 alpha cos(theta) across; within
     /// alpha of the horizon that ends. So the numbers are of the order 1 and smooth, and few cells do. B has taken
-    /// off it what facets that lie level would have: the columns of a smooth surface are too few for a fifth power.
+    /// off it what facets that lie level would have: the columns of a smooth surface are too few for a fifth power. A lobe
+    /// without a Fresnel term has 0.
     pub fn cell(&self, alpha: f64, theta: f64) -> [f64; NUMBERS] {
         let map = self.inverse() * turn(-theta);
         let scale = 1.0 / map.y_axis.y;
@@ -133,11 +134,15 @@ impl Cosine {
             map.x_axis.z * skew,
             map.z_axis.z * scale / (alpha * narrow),
             libm::exp(self.amplitude),
-            self.fresnel - libm::exp(self.amplitude) * level(libm::cos(theta)),
+            if self.fresnel > 0.0 {
+                self.fresnel - libm::exp(self.amplitude) * level(libm::cos(theta))
+            } else {
+                0.0
+            },
         ]
     }
 
-    /// [`Self::cell`] undone: M^-1 for offsets in the frame of tangent, bitangent and normal, A and B.
+    /// [`Self::cell`] undone: M^-1 for offsets in the frame of tangent, bitangent and normal, A, and B where the lobe has a Fresnel term.
     pub fn of_cell(cell: &[f64; NUMBERS], alpha: f64, theta: f64) -> (DMat3, f64, f64) {
         let skew = alpha * libm::sin(theta);
         let narrow = libm::cos(theta) + alpha;
