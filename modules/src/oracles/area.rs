@@ -132,7 +132,10 @@ mod tests {
 
     #[track_caller]
     fn near(got: f64, expected: f64, relative: f64) {
-        assert!((got - expected).abs() <= relative * expected.abs().max(1e-12), "{got} is not {expected}");
+        assert!(
+            (got - expected).abs() <= relative * expected.abs().max(1e-12),
+            "{got} is not {expected}"
+        );
     }
 
     fn at(degrees: f64, distance: f64) -> DVec3 {
@@ -178,7 +181,11 @@ mod tests {
         near(sphere(at(120.0, 1.0), 0.999, DVec3::Z), 0.225_855_213, 1e-7);
         near(sphere(at(120.0, 1.0), 1.5, DVec3::Z), 0.25, 1e-12);
         near(disk(DVec3::Z, -DVec3::Z, 1.0, DVec3::Z, false), 0.5, 1e-9);
-        near(disk(DVec3::new(2.0, 0.0, 1.0), -DVec3::Z, 1.0, DVec3::Z, false), 0.052_786_404_5, 1e-9);
+        near(
+            disk(DVec3::new(2.0, 0.0, 1.0), -DVec3::Z, 1.0, DVec3::Z, false),
+            0.052_786_404_5,
+            1e-9,
+        );
         near(tube(DVec3::Z, DVec3::X, 1.0, 1e-6, DVec3::Z, false), 0.549_815_144e-6, 1e-6);
         near(tube(DVec3::Z, DVec3::X, 1e6, 1e-3, DVec3::Z, false), 1e-3, 1e-6);
         near(tube(DVec3::Z, DVec3::Z, 1.0, 0.5, DVec3::Z, true), 0.5, 1e-9);
