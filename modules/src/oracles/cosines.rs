@@ -310,6 +310,8 @@ impl Cosine {
         };
         // Around the lobe's own middle and widths, not around the fit: that would be free to look away from what it misses.
         fit.descend(&fit.half_spaces(&samples), whole);
+        // A share; the fit may want a hundredth more.
+        fit.amplitude = f64::min(fit.amplitude, 0.0);
         fit.fresnel = libm::exp(fit.amplitude) * fresnel / whole;
         fit
     }
