@@ -105,7 +105,11 @@ fn lights() -> Vec<Light> {
     let mut lights = Vec::new();
     while lights.len() < LIGHTS {
         let kind = lights.len();
-        let degrees = if kind % 2 == 0 { random.between(0.0, 89.5) } else { random.between(60.0, 89.9) };
+        let degrees = if kind % 2 == 0 {
+            random.between(0.0, 89.5)
+        } else {
+            random.between(60.0, 89.9)
+        };
         let theta = degrees.to_radians();
         let centre = if kind % 4 < 2 {
             let aside = random.direction();
@@ -242,7 +246,11 @@ impl Quadrature {
         if depth == 14 || (depth > 1 && !hides && (sum - whole).abs() < 3e-6) {
             return sum;
         }
-        quarters.iter().zip(parts).map(|(quarter, part)| self.refined(*quarter, part, depth + 1)).sum()
+        quarters
+            .iter()
+            .zip(parts)
+            .map(|(quarter, part)| self.refined(*quarter, part, depth + 1))
+            .sum()
     }
 
     /// What the surface sends toward v of a light.
@@ -300,7 +308,10 @@ fn errors(lights: &[Light], density: Density, tables: &[(&[f32], usize)]) -> Vec
         tables.iter().map(of_table).collect()
     };
     thread::scope(|scope| {
-        let jobs: Vec<_> = ROUGHNESSES.map(|roughness| scope.spawn(move || of(roughness))).into_iter().collect();
+        let jobs: Vec<_> = ROUGHNESSES
+            .map(|roughness| scope.spawn(move || of(roughness)))
+            .into_iter()
+            .collect();
         jobs.into_iter().map(|job| job.join().unwrap()).collect()
     })
 }
@@ -311,7 +322,10 @@ fn errors(lights: &[Light], density: Density, tables: &[(&[f32], usize)]) -> Vec
 fn the_table_is_better_than_the_published_one() {
     let (ours, half) = (kept("ggx"), table(ggx, SIDE / 2));
     let found = errors(&lights(), ggx_density, &[(&ours, SIDE), (&half, SIDE / 2)]);
-    println!("GGX         published 64x64     ours {SIDE}x{SIDE}          ours {0}x{0}       (RMS, largest)", SIDE / 2);
+    println!(
+        "GGX         published 64x64     ours {SIDE}x{SIDE}          ours {0}x{0}       (RMS, largest)",
+        SIDE / 2
+    );
     for (index, row) in found.iter().enumerate() {
         let (roughness, published, pinned) = (ROUGHNESSES[index], PUBLISHED[index], OURS[index]);
         let (ours, half) = (row[0], row[1]);
@@ -319,7 +333,10 @@ fn the_table_is_better_than_the_published_one() {
             "{roughness:<10} {:.5}  {:.4}    {:.5}  {:.4}    {:.5}  {:.4}",
             published.0, published.1, ours.0, ours.1, half.0, half.1
         );
-        assert!(ours.0 < published.0 && ours.1 < published.1, "roughness {roughness}: {ours:?}, published {published:?}");
+        assert!(
+            ours.0 < published.0 && ours.1 < published.1,
+            "roughness {roughness}: {ours:?}, published {published:?}"
+        );
         assert!(is_no_worse(ours, pinned), "roughness {roughness}: {ours:?}, was {pinned:?}");
         assert!(half.0 < published.0, "roughness {roughness}: {half:?}, published {published:?}");
     }
@@ -335,7 +352,10 @@ fn the_other_tables_are_as_good_as_they_were() {
         println!("{name}    (RMS, largest)");
         for ((roughness, row), pinned) in ROUGHNESSES.iter().zip(errors(lights, density, &[(&kept, SIDE)])).zip(pinned) {
             println!("{roughness:<10} {:.5}  {:.4}", row[0].0, row[0].1);
-            assert!(is_no_worse(row[0], pinned), "{name}, roughness {roughness}: {row:?}, was {pinned:?}");
+            assert!(
+                is_no_worse(row[0], pinned),
+                "{name}, roughness {roughness}: {row:?}, was {pinned:?}"
+            );
         }
     }
 }
@@ -394,7 +414,11 @@ fn all_mean_the_same_lobe() {
             f0: 1.0,
             alpha,
         };
-        for l in [DVec3::new(-f64::sin(theta), 0.01, f64::cos(theta)), DVec3::new(0.3, -0.4, 0.5), DVec3::new(-0.9, 0.1, 0.05)] {
+        for l in [
+            DVec3::new(-f64::sin(theta), 0.01, f64::cos(theta)),
+            DVec3::new(0.3, -0.4, 0.5),
+            DVec3::new(-0.9, 0.1, 0.05),
+        ] {
             let l = l.normalize();
             let (found, truth) = (ggx_density(alpha, v, l), microfacet(&s, v, l) * l.z);
             assert!((found - truth).abs() < 1e-9 * truth, "{alpha} {theta} {l}: {found}, {truth}");
@@ -411,7 +435,11 @@ fn all_mean_the_same_lobe() {
             ],
         };
         let wall = Quadrature::of(ggx_density, alpha, &light);
-        let right: f64 = ggx(alpha, v, 256).iter().filter(|sample| sample.l.y > 0.0).map(|sample| sample.weight).sum();
+        let right: f64 = ggx(alpha, v, 256)
+            .iter()
+            .filter(|sample| sample.l.y > 0.0)
+            .map(|sample| sample.weight)
+            .sum();
         assert!((wall - right).abs() < 6e-3, "{alpha} {theta}: {wall}, {right}");
     }
 }

@@ -218,7 +218,11 @@ impl Cosine {
             let n = (inverses[index % SPREADS.len()] * m).normalize();
             let weight = libm::pow(density(n), -UNIFORMITY);
             sum += weight;
-            let integral = samples.iter().filter(|sample| sample.l.dot(n) > 0.0).map(|sample| sample.weight).sum();
+            let integral = samples
+                .iter()
+                .filter(|sample| sample.l.dot(n) > 0.0)
+                .map(|sample| sample.weight)
+                .sum();
             spaces.push(HalfSpace {
                 n,
                 root_weight: weight,

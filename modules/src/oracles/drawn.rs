@@ -64,7 +64,9 @@ pub fn beckmann(alpha: f64, v: DVec3, strata: usize) -> Vec<Sample> {
     };
     let draw = |at| {
         let h = beckmann_facet(alpha, at);
-        reflected(v, h, |l, v_dot_h| v_dot_h / ((1.0 + lambda(v) + lambda(l)) * v.z * h.z) / (strata * strata) as f64)
+        reflected(v, h, |l, v_dot_h| {
+            v_dot_h / ((1.0 + lambda(v) + lambda(l)) * v.z * h.z) / (strata * strata) as f64
+        })
     };
     middles(strata).filter_map(draw).collect()
 }
