@@ -156,7 +156,11 @@ fn write(context: &Context, mut report: report::Report, options: &Options) -> Re
             outputs.stage(&path, &bytes)?;
         }
     }
-    let head = if report.fits.is_empty() { HEAD } else { "# Models and measured reflectance\n\n" };
+    let head = if report.fits.is_empty() {
+        HEAD
+    } else {
+        "# Models and measured reflectance\n\n"
+    };
     if let Some(path) = &options.markdown {
         outputs.stage(path, format!("{head}{}", report::write::markdown(&report)).as_bytes())?;
     }
