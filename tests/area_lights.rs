@@ -199,7 +199,7 @@ fn form_factors_are_exact() {
         let rows: Vec<Json> = all.iter().map(white).collect();
         let got = evaluated(&light(shape, &diffuse("form-factor")), &rows, false);
         // Eight points across a thin tube, chords for the ends of a thick one.
-        let (absolute, relative) = if shape.starts_with("tube") { (2e-5, 1e-3) } else { (1e-6, 1e-4) };
+        let (absolute, relative) = if shape.starts_with("tube") { (2e-5_f64, 1e-3) } else { (1e-6, 1e-4) };
         let mut worst: f64 = 0.0;
         for ((got, at), row) in got.iter().zip(&all).zip(&rows) {
             let error = (got - at.truth).abs();
