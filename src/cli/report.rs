@@ -3,10 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use shadewright::report::{self, Baseline, Done, MeasureError, ReportError};
+use indexmap::IndexMap;
+use shadewright::compiler::Report;
+use shadewright::compiler::diagnostics::{Diagnostic, codes};
+use shadewright::report::proofs::{self, Bench, Effort};
+use shadewright::report::{self, Baseline, Done, MeasureError, ReportError, fit};
 use shadewright::runtime::gpu::Gpu;
+use shadewright::runtime::measured::Measured;
 
 use super::failure::Failure;
+use super::input;
 use super::output::{Outputs, say, say_json};
 use super::watch::Watch;
 use super::{Context, Format};
@@ -22,11 +28,19 @@ Equal on every machine: errors of the evaluator, operations counted in the linke
 
 ";
 
+/// Samples of a chi-square test of `--properties`, and with `--quick`.
+const SAMPLES: usize = 1_000_000;
+const SAMPLES_QUICK: usize = 30_000;
+
 /// Options of `report`.
 #[derive(Args)]
 pub struct Options {
-    /// Categories to report on; all where none is named
+    /// Categories to report on; all where none is named. With --measured the models to fit, recipes; all modules where none is named
+    #[arg(value_name = "CATEGORY|MODEL")]
     categories: Vec<String>,
+    /// Fits models to a file of measured reflectance (MERL .binary, RGL .bsdf) instead
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["check", "accept"])]
+    measured: Option<PathBuf>,
     /// Folder for report.html, report.json, rows.csv, plots and pictures
     #[arg(short, value_name = "DIR", default_value = "report", conflicts_with_all = ["check", "accept"])]
     output: PathBuf,
@@ -45,11 +59,21 @@ pub struct Options {
     /// Writes the baseline that --check compares with
     #[arg(long, value_name = "FILE", conflicts_with = "categories")]
     accept: Option<PathBuf>,
+    /// Holds what manifests claim against the device instead, and writes the worst case of each property in Markdown. Nothing else is reported
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["accept", "check", "markdown", "measured", "no_device", "categories"])]
+    properties: Option<PathBuf>,
 }
 
 /// # Errors
 /// An experiment is wrong, an alternative cannot be measured, there is no GPU, or something is worse than the baseline.
 pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
+    if let Some(path) = &options.properties {
+        return properties(context, path, options.quick);
+    }
+    if let Some(path) = &options.measured {
+        let report = fitted(context, path, options)?;
+        return write(context, report, options);
+    }
     let experiments = report::experiments(&*context.library, &context.catalog)?;
     let is_baseline = options.check.is_some() || options.accept.is_some();
     let gpu = if is_baseline || options.no_device {
@@ -74,10 +98,50 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
         },
     );
     watch.finish();
-    let mut report = made.map_err(|error| failure(error, options))?;
+    let report = made.map_err(|error| failure(error, options))?;
     if let Some(path) = &options.check {
         return check(context, path, &Baseline::of(&report));
     }
+    write(context, report, options)
+}
+
+/// The best fits to a measured table.
+fn fitted(context: &Context, path: &Path, options: &Options) -> Result<report::Report, Failure> {
+    let name = path.display().to_string();
+    let bytes = input::bytes(path)?;
+    let table = Measured::read(&bytes)
+        .map_err(|error| Diagnostic::new(codes::MEASURED_DAMAGED, format!("{name}: {error}")))
+        .map_err(Report::from)?;
+    let subjects = fit::subjects(&*context.library, &context.catalog)?;
+    let mut models = IndexMap::new();
+    for typed in &options.categories {
+        models.insert(typed.clone(), input::recipe(typed)?);
+    }
+    let watch = Watch::new(1, "models");
+    let mut report = report::Report::default();
+    report.provenance.version = env!("CARGO_PKG_VERSION").to_owned();
+    for subject in &subjects {
+        let made = fit::fit(
+            &context.catalog,
+            subject,
+            models.clone(),
+            (&name, &table),
+            &fit::FitOptions {
+                quick: options.quick,
+                cancel: watch.cancel(),
+                progress: &|done, of, next| watch.at(done, of, next),
+            },
+        );
+        report.fits.push(made.map_err(|error| match error {
+            MeasureError::Interrupted => Failure::Interrupted("nothing is written".to_owned()),
+            other => failure(other.into(), options),
+        })?);
+    }
+    watch.finish();
+    Ok(report)
+}
+
+fn write(context: &Context, mut report: report::Report, options: &Options) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
     if let Some(path) = &options.accept {
         outputs.stage(path, Baseline::of(&report).to_json().as_bytes())?;
@@ -92,8 +156,13 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
             outputs.stage(&path, &bytes)?;
         }
     }
+    let head = if report.fits.is_empty() {
+        HEAD
+    } else {
+        "# Models and measured reflectance\n\n"
+    };
     if let Some(path) = &options.markdown {
-        outputs.stage(path, format!("{HEAD}{}", report::write::markdown(&report)).as_bytes())?;
+        outputs.stage(path, format!("{head}{}", report::write::markdown(&report)).as_bytes())?;
     }
     outputs.commit()?;
     match context.format {
@@ -102,14 +171,79 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
     }
 }
 
-fn failure(error: ReportError, options: &Options) -> Failure {
+/// What is claimed, measured.
+fn properties(context: &Context, path: &Path, quick: bool) -> Result<(), Failure> {
+    let roles = proofs::load(&*context.library, &context.catalog)?;
+    let gpu = Gpu::headless()?;
+    let bench = Bench::new(&context.catalog, Some(&gpu));
+    let watch = Watch::new(1, "modules");
+    let effort = Effort {
+        samples: if quick { SAMPLES_QUICK } else { SAMPLES },
+        others: true,
+        modules: &|_| true,
+        cancel: watch.cancel(),
+        progress: &|done, of, next| watch.at(done, of, next),
+    };
+    let measured = proofs::prove(&bench, &roles, &effort).and_then(|found| {
+        let mut combined = Vec::new();
+        for role in &roles {
+            for name in &role.declared.combinations {
+                combined.push(proofs::combinations(&bench, role, name, &effort)?);
+            }
+        }
+        Ok((found, combined))
+    });
+    watch.finish();
+    let (found, combined) = measured.map_err(|error| measure_failure(error, "nothing is written".to_owned()))?;
+    let mut outputs = Outputs::default();
+    let page = report::write::proofs(&bench.device(), effort.samples, &found, &combined);
+    outputs.stage(path, page.as_bytes())?;
+    outputs.commit()?;
+    let broken: Vec<&proofs::Proof> = found.iter().filter(|proof| proof.is_broken()).collect();
+    let faults: Vec<&String> = combined.iter().flat_map(|c| &c.faults).collect();
+    if context.format == Format::Json {
+        say_json(&serde_json::json!({"device": bench.device(), "proofs": found, "combinations": combined}))?;
+    } else {
+        let line = |p: &&proofs::Proof| {
+            format!(
+                "broken: {}: {:?}: {:e}, bound {:e}, {}",
+                p.module, p.property, p.worst, p.bound, p.at
+            )
+        };
+        let mut lines: Vec<String> = broken.iter().map(line).collect();
+        lines.extend(faults.iter().map(|fault| format!("broken: {fault}")));
+        lines.push(format!(
+            "{} properties measured, {} broken: {}",
+            found.len(),
+            lines.len(),
+            path.display()
+        ));
+        say(&lines.join("\n"))?;
+    }
+    if broken.is_empty() && faults.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Said)
+    }
+}
+
+fn measure_failure(error: MeasureError, kept: String) -> Failure {
     match error {
-        ReportError::Measure(MeasureError::Interrupted) => Failure::Interrupted(format!(
-            "what was measured is kept in {}; the same command goes on from there",
-            options.output.join(DONE).display()
-        )),
-        ReportError::Measure(MeasureError::Compile(report)) => report.into(),
-        ReportError::Measure(MeasureError::Runtime(error)) => error.into(),
+        MeasureError::Interrupted => Failure::Interrupted(kept),
+        MeasureError::Compile(report) => report.into(),
+        MeasureError::Runtime(error) => error.into(),
+        other => Failure::message(other.to_string()),
+    }
+}
+
+fn failure(error: ReportError, options: &Options) -> Failure {
+    let folder = options.output.join(DONE);
+    let kept = format!(
+        "what was measured is kept in {}; the same command goes on from there",
+        folder.display()
+    );
+    match error {
+        ReportError::Measure(error) => measure_failure(error, kept),
         other => Failure::message(other.to_string()),
     }
 }
@@ -131,8 +265,8 @@ fn check(context: &Context, path: &Path, now: &Baseline) -> Result<(), Failure> 
 
 /// A line for each row with a fault, and where the page is.
 fn summary(report: &report::Report, options: &Options) -> String {
-    let mut lines = Vec::new();
-    let mut rows = 0;
+    let mut lines: Vec<String> = report.fits.iter().flat_map(fit_lines).collect();
+    let mut rows: usize = report.fits.iter().map(|fits| fits.rows.len()).sum();
     for results in &report.experiments {
         for row in &results.rows {
             rows += 1;
@@ -164,6 +298,18 @@ fn summary(report: &report::Report, options: &Options) -> String {
         lines.push(format!("{rows} rows"));
     }
     lines.join("\n")
+}
+
+/// A line for each model, the best first, and why others have none.
+fn fit_lines(fits: &report::data::Fits) -> Vec<String> {
+    let row = |row: &report::data::Fit| {
+        let errors = &row.errors;
+        let figures = [errors.rms, errors.p95, errors.max].map(report::write::number);
+        let [rms, p95, max] = figures;
+        format!("{}: RMS {rms}, p95 {p95}, max {max}: {}", row.label, report::write::parameters(row))
+    };
+    let without = fits.without.iter().map(|(name, why)| format!("{name}: no fit: {why}"));
+    fits.rows.iter().map(row).chain(without).collect()
 }
 
 /// Finished rows in a folder.

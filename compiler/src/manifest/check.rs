@@ -7,7 +7,8 @@ use naga::valid::Capabilities;
 
 use super::Step::{self, Index, Key};
 use super::{
-    CategoryManifest, ModuleManifest, Param, ParamMode, ParamType, Parsed, PassDecl, Resource, ResourceKind, Typed, ValueError, typed,
+    Arity, CategoryManifest, ModuleManifest, Param, ParamMode, ParamType, Parsed, PassDecl, Resource, ResourceKind, Typed, ValueError,
+    typed,
 };
 use crate::diagnostics::{Diagnostic, Report, codes};
 
@@ -25,6 +26,17 @@ pub fn check_category(parsed: &Parsed<CategoryManifest>) -> Result<(), Report> {
     let mut found = Vec::new();
     group(parsed, &[Key("group")], parsed.value.group, &mut found);
     resources(parsed, &parsed.value.resources, &IndexMap::new(), &mut found);
+    for (name, resource) in &parsed.value.resources {
+        if matches!(resource.kind, ResourceKind::Data { .. }) {
+            let path = [Key("resources"), Key(name), Key("kind")];
+            let message = format!("`{name}` cannot be `Data`");
+            found.push(
+                parsed
+                    .error_at(&path, codes::BAD_DATA_KIND, message, "in a category")
+                    .note("a module has files in its folder; a category's resources are its modules' and the host's"),
+            );
+        }
+    }
     Report::unless_empty(found)
 }
 
@@ -138,8 +150,24 @@ fn param<T>(parsed: &Parsed<T>, [table, name]: [Step; 2], declared: &Param, foun
     }
 }
 
-fn mode<T>(parsed: &Parsed<T>, [table, name]: [Step; 2], declared: &Param, found: &mut Vec<Diagnostic>) {
+fn mode(parsed: &Parsed<ModuleManifest>, [table, name]: [Step; 2], declared: &Param, found: &mut Vec<Diagnostic>) {
     let Key(shown) = name else { return };
+    if let Some(slot) = declared.filled_slot() {
+        let known = parsed.value.slots.get(slot).is_some_and(|slot| slot.arity != Arity::Single);
+        if !known || declared.mode != ParamMode::Constant || declared.ty != ParamType::Bool {
+            found.push(
+                parsed
+                    .error_at(
+                        &[table, name, Key("role")],
+                        codes::BAD_MODE,
+                        format!("`{shown}` cannot say whether `{slot}` is filled"),
+                        "no such optional or list slot, or no constant `Bool`",
+                    )
+                    .note("declare it `type: Bool, default: false, mode: Constant`"),
+            );
+        }
+        return;
+    }
     let scalar = matches!(declared.ty, ParamType::F32 | ParamType::U32 | ParamType::I32 | ParamType::Bool);
     let (label, note) = match (declared.mode, declared.ty) {
         (ParamMode::Uniform, ParamType::Bool) => ("WGSL has no `bool` in uniform buffers", "add `mode: Override` or `mode: Constant`"),
@@ -216,6 +244,9 @@ fn resources<T>(
         if let Some(number) = resource.group {
             group(parsed, &[path[0], path[1], Key("group")], number, found);
         }
+        if let ResourceKind::Data { file, format } = &resource.kind {
+            data(parsed, path, (file.as_deref(), format.is_some()), found);
+        }
         if let ResourceKind::Depth { pass } | ResourceKind::Views { pass } = &resource.kind
             && !matches!(passes.get(pass), Some(PassDecl::Draw { .. }))
         {
@@ -239,6 +270,34 @@ fn resources<T>(
                     .suggest(pass, "passes that draw", draws),
             );
         }
+    }
+}
+
+fn data<T>(parsed: &Parsed<T>, [resources, name]: [Step; 2], (file, has_format): (Option<&str>, bool), found: &mut Vec<Diagnostic>) {
+    let Key(shown) = name else { return };
+    let kind = [resources, name, Key("kind")];
+    match file {
+        None if !has_format => found.push(
+            parsed
+                .error_at(
+                    &kind,
+                    codes::BAD_DATA_KIND,
+                    format!("nothing fills `{shown}`"),
+                    "neither `file` nor `format`",
+                )
+                .note("`Data(file: \"NAME.f32\")` is the module's own table, `Data(format: \"NAME\")` a file that a recipe names"),
+        ),
+        Some(file) if file.is_empty() || file == "." || file == ".." || file.contains(['/', '\\']) => found.push(
+            parsed
+                .error_at(
+                    &[resources, name, Key("kind"), Key("file")],
+                    codes::BAD_DATA_KIND,
+                    format!("`{file}` is no file of the module's folder"),
+                    "not a file's bare name",
+                )
+                .note("put the file beside `module.ron`"),
+        ),
+        _ => {}
     }
 }
 

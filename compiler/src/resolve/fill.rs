@@ -8,7 +8,7 @@ use super::{Place, Standing, Tree, TreeNode, rules};
 use crate::catalog::{Catalog, Module, Variants};
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::limits;
-use crate::manifest::{Arity, Filling, Node, ParamMode, Slot, Typed, Value, typed};
+use crate::manifest::{Arity, Filling, ModuleManifest, Node, ParamMode, Slot, Typed, Value, typed};
 use crate::program::Recipe;
 
 /// Resolves a recipe.
@@ -69,6 +69,7 @@ impl Resolver<'_> {
             return Err(bad_label(label, &place(&self.tree)));
         }
         unknown_slots(&module, node.fill.keys(), || place(&self.tree))?;
+        unknown_files(&module, node.files.keys(), || place(&self.tree))?;
         self.tree.nodes.push(TreeNode {
             module: Arc::clone(&module),
             parent,
@@ -76,6 +77,7 @@ impl Resolver<'_> {
             fills: Vec::with_capacity(module.manifest.slots.len()),
             variant: Variants::key(&constants),
             constants,
+            files: node.files.clone(),
             label: node.label.clone(),
         });
         for slot in 0..module.manifest.slots.len() {
@@ -183,6 +185,27 @@ pub fn unknown_slots<'a>(module: &Module, names: impl IntoIterator<Item = &'a St
     Ok(())
 }
 
+/// Finds files for what takes none.
+fn unknown_files<'a>(module: &Module, names: impl IntoIterator<Item = &'a String>, place: impl Fn() -> Place) -> Result<(), Report> {
+    for name in names {
+        if module.manifest.format_of(name).is_none() {
+            let at = place().keys(&["files", name]);
+            let known = module
+                .manifest
+                .resources
+                .keys()
+                .filter(|name| module.manifest.format_of(name).is_some());
+            return Err(
+                Diagnostic::new(codes::UNKNOWN_FILE, format!("`{}` takes no file `{name}`", module.name))
+                    .at(&at.file, at.key_span(), "no such resource")
+                    .suggest(name, "resources that take a file", known.map(String::as_str))
+                    .into(),
+            );
+        }
+    }
+    Ok(())
+}
+
 /// The error about a module whose default leads back to it, if it does. `defaults` are the modules whose defaults are being expanded.
 pub fn circle(defaults: &[Arc<Module>], module: &Module, at: impl Fn() -> Place) -> Option<Report> {
     let first = defaults.iter().position(|m| m.name == module.name)?;
@@ -236,7 +259,7 @@ fn list_or_none(names: &[String]) -> String {
 pub fn unknown_params<'a>(module: &Module, names: impl IntoIterator<Item = &'a String>, place: impl Fn() -> Place) -> Result<(), Report> {
     let manifest = &module.manifest;
     for name in names {
-        if !manifest.params.contains_key(name) {
+        if manifest.params.get(name).is_none_or(|param| param.filled_slot().is_some()) {
             let at = place().keys(&["freeze", name]);
             if manifest.instances.contains_key(name) {
                 return Err(
@@ -249,12 +272,28 @@ pub fn unknown_params<'a>(module: &Module, names: impl IntoIterator<Item = &'a S
             return Err(
                 Diagnostic::new(codes::UNKNOWN_PARAM, format!("`{}` has no parameter `{name}`", module.name))
                     .at(&at.file, at.key_span(), "no such parameter")
-                    .suggest(name, "parameters", manifest.params.keys().map(String::as_str))
+                    .suggest(name, "parameters", settable(manifest))
                     .into(),
             );
         }
     }
     Ok(())
+}
+
+/// Names of the parameters that a recipe may set.
+fn settable(manifest: &ModuleManifest) -> impl Iterator<Item = &str> {
+    let params = manifest.params.iter().filter(|(_, param)| param.filled_slot().is_none());
+    params.map(|(name, _)| name.as_str())
+}
+
+/// Whether anything stands in a slot of the node.
+fn is_filled(module: &Module, node: &Node, slot: &str) -> bool {
+    let default = || module.manifest.slots.get(slot)?.default.as_ref();
+    match node.fill.get(slot).or_else(default) {
+        Some(Filling::One(_)) => true,
+        Some(Filling::Many(nodes)) => !nodes.is_empty(),
+        None => false,
+    }
 }
 
 /// Parameters that are constants in this node.
@@ -263,6 +302,11 @@ fn constants(module: &Module, node: &Node, place: impl Fn() -> Place) -> Result<
     let manifest = &module.manifest;
     let mut constants = IndexMap::new();
     for (name, param) in &manifest.params {
+        if let Some(slot) = param.filled_slot() {
+            let filled = is_filled(module, node, slot);
+            constants.insert(name.clone(), (Value::Bool(filled), Typed::Bool(filled)));
+            continue;
+        }
         let frozen = node.freeze.get(name);
         let value = match frozen {
             Some(value) => value,

@@ -37,7 +37,12 @@ pub fn ggx_g2_separable(alpha: f64, theta_v: f64, theta_l: f64) -> f64 {
 
 /// Masking and shadowing correlated by height. Heitz 2014, eq. 99.
 pub fn ggx_g2_correlated(alpha: f64, theta_v: f64, theta_l: f64) -> f64 {
-    1.0 / (1.0 + ggx_lambda(alpha, theta_v) + ggx_lambda(alpha, theta_l))
+    ggx_g2_of_widths([alpha; 2], [theta_v, theta_l])
+}
+
+/// The same where the two directions see facets of different widths.
+pub fn ggx_g2_of_widths(alpha: [f64; 2], theta: [f64; 2]) -> f64 {
+    1.0 / (1.0 + ggx_lambda(alpha[0], theta[0]) + ggx_lambda(alpha[1], theta[1]))
 }
 
 /// G2 / (4 cos cos), 0 at and below the horizon.
@@ -92,5 +97,6 @@ pub fn microfacet(s: &Surface, v: DVec3, l: DVec3) -> f64 {
     }
     let h = v + l;
     let d = ggx_d(s.alpha, angle(s.normal, h));
-    schlick(s.f0, angle(v, h).cos()) * d * ggx_v_correlated(s.alpha, s.normal, v, l) + lambert(s.diffuse)
+    // Half the angle between the directions, the same from either, whatever their rounding makes of h.
+    schlick(s.f0, (angle(v, l) / 2.0).cos()) * d * ggx_v_correlated(s.alpha, s.normal, v, l) + lambert(s.diffuse)
 }

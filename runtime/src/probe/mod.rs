@@ -18,6 +18,7 @@ use std::sync::OnceLock;
 
 use naga::Expression;
 use serde_json::{Value as Json, json};
+use shadewright_compiler::Report;
 use shadewright_compiler::catalog::Catalog;
 use shadewright_compiler::manifest::ResourceKind;
 use shadewright_compiler::program::{Program, Recipe};
@@ -25,6 +26,7 @@ use shadewright_compiler::reflect::{Binding, BindingType, Fill, Layout};
 use shadewright_evaluate::cost::{Analysis, cost_of_function};
 use shadewright_evaluate::{EvaluateError, Program as Evaluator};
 
+use crate::data;
 use crate::gpu::pack::unpack;
 use crate::gpu::pipeline::Pipelines;
 use crate::gpu::{Gpu, GpuError, RuntimeError};
@@ -51,6 +53,8 @@ pub struct Probe {
     result: Layout,
     /// The result's numbers.
     numbers: Vec<Number>,
+    /// Numbers of the bindings of kind `Data`, by group and binding.
+    data: data::Tables,
     /// The program for the CPU, without pipeline constants.
     evaluator: OnceLock<Result<Evaluator, EvaluateError>>,
 }
@@ -59,7 +63,7 @@ impl Probe {
     /// Links the program that evaluates a function of the interface that the recipe's root has.
     ///
     /// # Errors
-    /// The recipe or the function is wrong, or no buffer holds the function's result.
+    /// The recipe or the function is wrong, a file of data cannot be used, or no buffer holds the function's result.
     pub fn new(catalog: &Catalog, recipe: &Recipe, function: &str) -> Result<Self, RuntimeError> {
         let program = catalog.compile_probe(recipe, function)?;
         let names = Names::of(catalog, program.reflection());
@@ -71,8 +75,10 @@ impl Probe {
             what: "probing".into(),
             needs: "a result that a buffer can hold".into(),
         })?;
+        let data = data::load_all(&program).map_err(Report::from)?;
         Ok(Self {
             function: function.to_owned(),
+            data,
             arguments: element(INPUT),
             numbers: result.members.iter().flat_map(|value| numbers(&value.layout)).collect(),
             result,
@@ -117,6 +123,13 @@ impl Probe {
         called.map_or_else(Analysis::default, |function| cost_of_function(module, info, function))
     }
 
+    /// The tables that fill bindings of kind `Data`, in the order of group and binding.
+    pub fn tables(&self) -> Vec<&[f32]> {
+        let mut tables: Vec<_> = self.data.iter().collect();
+        tables.sort_by_key(|(place, _)| **place);
+        tables.into_iter().map(|(_, numbers)| &**numbers).collect()
+    }
+
     /// Names of a result's numbers, in the order in which [`Probe::on_gpu`] gives them: empty for a scalar, `x` of a vector, `diffuse.x` of a
     /// struct's member, `[0].x` of an array's element or a matrix's column.
     pub fn components(&self) -> Vec<String> {
@@ -142,6 +155,16 @@ impl Probe {
             &self.names,
             rows,
         )?)
+    }
+
+    /// Packs rows that differ from one row in some numbers only, each of which is a column: `s.alpha`, `v.x`, named as in
+    /// [`Probe::components`]. Where rows of JSON take longer than what is done with them.
+    ///
+    /// # Errors
+    /// The row does not fit, no argument has a number of a column's name that is an f32, or columns differ in length.
+    pub fn varied(&self, row: &Json, columns: &[(&str, &[f32])]) -> Result<Table, RuntimeError> {
+        let numbers = self.arguments.as_ref().map(numbers).unwrap_or_default();
+        Ok(self.table(std::slice::from_ref(row))?.varied(&numbers, columns)?)
     }
 
     /// Results of a table as `probe` gives them: `{"function", "device", "results"}`, the results in the order of the rows, in the form that
