@@ -44,6 +44,7 @@ fn sphere_direction(step: usize, a: f64, b: f64) -> DVec3 {
 /// A light and where it is seen from: the normal of the surface at the origin.
 struct At {
     fields: Json,
+    place: DVec3,
     normal: DVec3,
     truth: f64,
     /// Square of its size over its distance, at most 1.
@@ -98,6 +99,7 @@ fn placed(shape: &str, place: DVec3, facing: DVec3, size: f64, thin: f64, normal
     fields["luminance"] = json!(1);
     At {
         fields,
+        place,
         normal,
         truth,
         share: (size * size / place.length_squared()).min(1.0),
@@ -284,7 +286,13 @@ fn highlights_are_finite_and_bounded() {
                 let alpha = ALPHAS[step % ALPHAS.len()];
                 let degrees = [0.0_f64, 45.0, 80.0, 89.9, 90.0, 95.0][step % 6];
                 let frame = at.normal.any_orthonormal_vector();
-                let v = single3(at.normal * degrees.to_radians().cos() + frame * degrees.to_radians().sin());
+                let mut v = at.normal * degrees.to_radians().cos() + frame * degrees.to_radians().sin();
+                let cosine = at.normal.dot(at.place);
+                // Every other eye looks at the mirrored light.
+                if step % 2 == 0 && cosine > 0.0 {
+                    v = (2.0 * cosine * at.normal - at.place).normalize();
+                }
+                let v = single3(v);
                 json!({
                     "s": {"normal": at.normal.to_array(), "diffuse": [0, 0, 0], "f0": [1, 1, 1], "alpha": alpha, "widths": [alpha, alpha]},
                     "v": v.to_array(), "instances": [at.fields],
