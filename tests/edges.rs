@@ -124,7 +124,7 @@ fn edges_keep_their_digits() {
             let across = cross(a, d);
             let sine = dot(across, across).sqrt();
             let scale = sine.atan2(dot(a, [x + u, y + v, z + w])) / sine;
-            let wrong: [f64; 3] = [0, 1, 2].map(|k| found[k] - across[k] * scale);
+            let wrong: [f64; 3] = [0, 1, 2].map(|k| f64::from(found[k]) - across[k] * scale);
             let error = dot(wrong, wrong).sqrt() / (sine * scale);
             if error > worst.0 {
                 worst = (error, index);
