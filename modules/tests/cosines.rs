@@ -292,7 +292,7 @@ fn mirrored(map: DMat3, integral: f64, light: &Light) -> f64 {
 
 /// The table as it is shipped.
 fn kept(name: &str) -> Vec<f32> {
-    let bytes = library().bytes(&format!("cosine/{name}/{name}.f32")).unwrap().unwrap();
+    let bytes = library().bytes(&format!("cosines/{name}-lobe/{name}-lobe.f32")).unwrap().unwrap();
     bytes.as_chunks::<4>().0.iter().map(|word| f32::from_le_bytes(*word)).collect()
 }
 
