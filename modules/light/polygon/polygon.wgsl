@@ -68,23 +68,18 @@ fn cover(i: u32, at: vec2f) -> vec2i {
     return covers;
 }
 
-/// Luminance, with the flux spread over all that shines: phi / (pi A). The floor stands for a square of a thousandth of a millimetre.
+/// Luminance, with the flux spread over all that shines: phi / (pi A); no less than 1e-12 m2.
 fn shape_luminance(i: u32) -> vec3f {
-    var area = max(abs(outline(i).area), 1e-12);
-    if params.two_sided {
-        area *= 2.0;
-    }
+    let area = max(abs(outline(i).area), 1e-12) * select(1.0, 2.0, params.two_sided);
     return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * area));
 }
 
-/// The centre of its area.
 fn shape_centre(i: u32) -> vec3f {
     let frame = axes(i);
     let centre = outline(i).centre;
     return instances[i].position + frame[0] * centre.x + frame[1] * centre.y;
 }
 
-/// Of the disk of the same area.
 fn shape_radius(i: u32) -> f32 {
     return sqrt(abs(outline(i).area) * INV_PI);
 }
@@ -135,19 +130,11 @@ fn shape_pdf(i: u32, origin: vec3f, l: vec3f) -> f32 {
 }
 
 fn shape_radiance(i: u32, origin: vec3f, l: vec3f) -> vec3f {
-    let is_in = abs(met(i, origin, l).y);
-    return shape_luminance(i) * (plane_shines(-dot(l, axes(i)[2]), params.two_sided) * is_in);
+    return shape_luminance(i) * (plane_shines(-dot(l, axes(i)[2]), params.two_sided) * abs(met(i, origin, l).y));
 }
 
 fn shape_configuration_factor(i: u32, origin: vec3f, n: vec3f) -> f32 {
     return shape_form_factor(i, origin, transpose(frame_of(n)));
-}
-
-/// Integral of cos / d^2 over a triangle with the corners a, a + b, a + c as if it were in its middle, by the volume between it and the origin.
-fn far_triangle(a: vec3f, b: vec3f, c: vec3f, volume: f32) -> f32 {
-    let middle = a + (b + c) / 3.0;
-    let square = dot(middle, middle);
-    return volume * middle.z / max(square * square, 1e-37);
 }
 
 /// The form factor of a polygon that is small for its distance: the triangles of the fan around the first corner above the horizon, of which each is
@@ -178,8 +165,10 @@ fn far_factor(i: u32, c: vec3f, a: vec3f, b: vec3f) -> f32 {
             let u = last - first;
             let w = at[which] - first;
             if found > 1u {
-                let area = 0.5 * (u.x * w.y - u.y * w.x);
-                sum += far_triangle(c + a * first.x + b * first.y, a * u.x + b * u.y, a * w.x + b * w.y, volume * area);
+                let at_middle = first + (u + w) / 3.0;
+                let middle = c + a * at_middle.x + b * at_middle.y;
+                let square = dot(middle, middle);
+                sum += 0.5 * (u.x * w.y - u.y * w.x) * volume * middle.z / max(square * square, 1e-37);
             }
             last = at[which];
             found++;
@@ -199,10 +188,9 @@ fn shape_form_factor(i: u32, origin: vec3f, local: mat3x3f) -> f32 {
     let a = local * frame[0];
     let b = local * frame[1];
     let middle = c + a * whole.centre.x + b * whole.centre.y;
-    let extent = whole.extent * max(length(a), length(b));
     let volume = -dot(c, cross(a, b)) * sign(whole.area);
     var factor = 0.0;
-    if extent * extent < 1e-4 * dot(middle, middle) {
+    if whole.extent * max(length(a), length(b)) < 1e-2 * length(middle) {
         factor = far_factor(i, c, a, b);
     } else if volume != 0.0 {
         var rim = vec2f(0.0);
@@ -218,7 +206,7 @@ fn shape_form_factor(i: u32, origin: vec3f, local: mat3x3f) -> f32 {
         factor *= 0.159154943091895;
     }
     // Positive in front, for corners in either order; a mirroring map turns the outline around.
-    let signed = factor * sign(whole.area) * sign(determinant(local));
+    let signed = factor * sign(whole.area * determinant(local));
     return select(max(signed, 0.0), abs(signed), params.two_sided);
 }
 

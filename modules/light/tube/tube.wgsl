@@ -5,10 +5,8 @@ fn axis(i: u32) -> vec3f {
 
 /// Luminance, with the flux spread over all that shines: phi / (pi A). The floor stands for a square of a thousandth of a millimetre.
 fn shape_luminance(i: u32) -> vec3f {
-    var area = 2.0 * PI * instances[i].radius * instances[i].length;
-    if params.caps {
-        area += 2.0 * PI * instances[i].radius * instances[i].radius;
-    }
+    let ends = select(0.0, instances[i].radius, params.caps);
+    let area = 2.0 * PI * instances[i].radius * (instances[i].length + ends);
     return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * max(area, 1e-12)));
 }
 
@@ -16,7 +14,6 @@ fn shape_centre(i: u32) -> vec3f {
     return instances[i].position;
 }
 
-/// Of the disk with the area that the tube shows from the side.
 fn shape_radius(i: u32) -> f32 {
     return sqrt(2.0 * INV_PI * instances[i].radius * instances[i].length);
 }
@@ -25,10 +22,8 @@ fn shape_radius(i: u32) -> f32 {
 fn shape_projected_area(i: u32, origin: vec3f) -> f32 {
     let toward = unit_or(origin - instances[i].position, vec3f(0.0));
     let side = 2.0 * instances[i].radius * instances[i].length * length(cross(toward, axis(i)));
-    if params.caps {
-        return side + PI * instances[i].radius * instances[i].radius * abs(dot(toward, axis(i)));
-    }
-    return side;
+    let end = PI * instances[i].radius * instances[i].radius * abs(dot(toward, axis(i)));
+    return side + select(0.0, end, params.caps);
 }
 
 /// The tube from the origin: columns are the direction from the nearest point of its axis to the origin, the one perpendicular to that and the axis,
@@ -105,16 +100,12 @@ fn shape_pdf(i: u32, origin: vec3f, l: vec3f) -> f32 {
     let toward = dot(ray.xy, center.xy);
     let miss = ray.x * center.y - ray.y * center.x;
     let under = square * r * r - miss * miss;
-    if outside <= 0.0 || toward <= 0.0 || under <= 0.0 {
+    let distance = outside / max(toward + sqrt(max(under, 0.0)), 1e-30);
+    if outside <= 0.0 || toward <= 0.0 || under <= 0.0 || abs(ray.z * distance - center.z) > half + 1e-6 * distance {
         return 0.0;
     }
-    let distance = outside / (toward + sqrt(under));
-    if abs(ray.z * distance - center.z) > half + 1e-6 * distance {
-        return 0.0;
-    }
-    let cosine = sqrt(under) / max(r, 1e-15);
-    let area = 2.0 * half_turn(i, away) * r * instances[i].length;
-    return (1.0 - share) * distance * distance / max(area * cosine, 1e-30);
+    let shown = 2.0 * half_turn(i, away) * instances[i].length * sqrt(under);
+    return (1.0 - share) * distance * distance / max(shown, 1e-30);
 }
 
 fn shape_radiance(i: u32, origin: vec3f, l: vec3f) -> vec3f {
@@ -165,9 +156,9 @@ fn thin_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, last
     let x = array<f32, 4>(0.1834346425, 0.5255324099, 0.7966664774, 0.9602898565);
     let w = array<f32, 4>(0.3626837834, 0.3137066459, 0.2223810345, 0.1012285363);
     let half = 0.5 * instances[i].length;
-    let heights = vec3f((local * frame[0]).z, (local * frame[1]).z, (local * frame[2]).z);
-    let r = instances[i].radius;
-    let part = part_above((local * c).z + abs(heights.z) * half, r * heights.x, r * heights.y, last);
+    let up = transpose(local)[2];
+    let heights = up * frame;
+    let part = part_above(dot(up, c) + abs(heights.z) * half, heights.x * instances[i].radius, heights.y * instances[i].radius, last);
     let middle = 0.5 * (part.x + part.y);
     let wide = 0.5 * (part.y - part.x);
     var sum = 0.0;
