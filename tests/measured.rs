@@ -35,7 +35,8 @@ fn glossy(v: DVec3, l: DVec3) -> [f64; 3] {
 }
 
 fn along_the_lobe(sizes: [usize; 3]) -> Vec<u8> {
-    let normals = |m: DVec3| reflection::ggx_d(ALPHA, reflection::angle(DVec3::Z, m));
+    // Of facets that stand upright the limit: a table's last row is no edge.
+    let normals = |m: DVec3| reflection::ggx_d(ALPHA, reflection::angle(DVec3::Z, m).min(TAU / 4.0 - 1e-9));
     let area = |v: DVec3| {
         let cosine = v.z.max(1e-3);
         cosine * (1.0 + reflection::ggx_lambda(ALPHA, cosine.acos()))
@@ -187,11 +188,9 @@ fn the_default_tables_are_of_ggx() {
         let (found, made) = (read(path).floats(), made.floats());
         assert_eq!(found.len(), made.len(), "{path}");
         for (index, (found, made)) in found.iter().zip(&made).enumerate() {
-            // Facets that stand upright are none by our rule, and in the file the limit of their density, alpha^2 / pi.
-            let upright = *made == 0.0 && (found - 0.09 * std::f32::consts::FRAC_1_PI).abs() < 1e-6;
             // Values where the warp comes from nothing are as uncertain as that: not at all in its middle.
             assert!(
-                upright || (found - made).abs() <= 2e-4 * made.abs().max(1e-2),
+                (found - made).abs() <= 2e-4 * made.abs().max(1e-2),
                 "{path}: number {index}: {found} instead of {made}"
             );
         }
