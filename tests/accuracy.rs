@@ -39,7 +39,7 @@ use shadewright::runtime::probe::Probe;
 /// Categories whose modules are compared.
 const CATEGORIES: [&str; 5] = ["brdf", "ndf", "masking", "fresnel", "diffuse"];
 /// Stratified rows of each function; the hard ones come on top.
-const ROWS: usize = 4_000;
+const ROWS: usize = 10_000;
 /// Largest relative error.
 const BOUND: f64 = 1e-4;
 /// Below it a value is as good as 0: see above.
