@@ -63,6 +63,10 @@ pub fn decode(format: &str, bytes: &[u8]) -> Result<Vec<f32>, DecodeError> {
 /// # Errors
 /// As for [`decode`]; the file cannot be read, or is larger than [`MAX_DATA`].
 pub fn read(path: &Path, format: &str) -> Result<Vec<f32>, DecodeError> {
+    // Said before the file is looked for: what is wrong is the module, whatever the file.
+    if FORMATS.iter().all(|(name, _)| *name != format) {
+        return Err(DecodeError::UnknownFormat(format.to_owned()));
+    }
     let failed = |error: std::io::Error| DecodeError::Damaged(error.to_string());
     if path.is_dir() {
         return Err(DecodeError::Damaged("is a folder".to_owned()));
