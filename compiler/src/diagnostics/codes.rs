@@ -116,7 +116,7 @@ codes! {
     UNKNOWN_TAG = "SW1003", "A rule of a space names a tag that neither the library nor the space has.";
     SPACE_TOO_LARGE = "SW1004", "A space with more alternatives than the limit.";
     SPACE_TOO_TANGLED = "SW1005", "A space whose rules tie together too much to be counted.";
-    SPACE_UNCOUNTABLE = "SW1006", "A space with too many permutations to be numbered.";
+    SPACE_UNCOUNTABLE = "SW1006", "A space with too many permutations to be numbered, or to be drawn at once.";
     SPACE_EMPTY = "SW1007", "A space without a legal permutation.";
 
     EXPERIMENT_INVALID = "SW1101", "An experiment says something that cannot be.";
