@@ -4,6 +4,8 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use super::reflection::angle;
+
 /// A light with a position.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
@@ -38,6 +40,41 @@ pub fn falloff_karis(distance: f64, range: f64) -> f64 {
 /// Windowed inverse square, the distance kept from 0. Lagarde and de Rousiers 2014.
 pub fn falloff(distance: f64, range: f64, size: f64) -> f64 {
     window(distance, range) / distance.max(size).powi(2)
+}
+
+/// What a spot light's edge makes of: linear in the cosine, 1 within the inner angle, 0 beyond the outer one; all three as 1 - cos.
+/// KHR_lights_punctual. Angles that differ by less than 1e-10 in 1 - cos are an edge.
+pub fn cone_ramp(versine: f64, inner: f64, outer: f64) -> f64 {
+    ((outer - versine) / (outer - inner).max(1e-10)).clamp(0.0, 1.0)
+}
+
+/// Solid angle of a cone of this half angle, sr.
+pub fn cone_solid_angle(half_angle: f64) -> f64 {
+    4.0 * PI * (half_angle / 2.0).sin().powi(2)
+}
+
+/// A light that shines into a cone.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    /// Place, intensity on the axis, range and size.
+    pub point: Point,
+    /// Axis, where the light travels to, any length.
+    pub direction: DVec3,
+    /// Angle to the axis up to which all of the light is there.
+    pub inner: f64,
+    /// Angle to the axis at which it ends.
+    pub outer: f64,
+}
+
+/// Illuminance of a surface with unit normal `n` at `place`, lx. Lagarde and de Rousiers 2014, on spot lights.
+pub fn spot_illuminance(light: &Spot, place: DVec3, n: DVec3) -> f64 {
+    let versine = |angle: f64| 2.0 * (angle / 2.0).sin().powi(2);
+    if light.direction == DVec3::ZERO {
+        return 0.0;
+    }
+    let theta = angle(light.direction, place - light.point.position);
+    let ramp = cone_ramp(versine(theta), versine(light.inner), versine(light.outer));
+    ramp * ramp * point_illuminance(&light.point, place, n)
 }
 
 /// Illuminance of a surface with unit normal `n` at `place`, lx.
