@@ -20,11 +20,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     files.sort();
 
-    let mut table = String::from("&[\n");
-    for (name, path) in &files {
+    let (texts, data): (Vec<_>, Vec<_>) = files.into_iter().partition(|(_, path)| has_extension(path, &["ron", "wgsl", "md"]));
+    let mut table = String::from("pub(super) static TEXTS: &[(&str, &str)] = &[\n");
+    for (name, path) in &texts {
         writeln!(table, "    ({name:?}, include_str!({:?})),", path.display().to_string())?;
     }
-    table.push(']');
+    table.push_str("];\npub(super) static DATA: &[(&str, &[u8])] = &[\n");
+    for (name, path) in &data {
+        writeln!(table, "    ({name:?}, include_bytes!({:?})),", path.display().to_string())?;
+    }
+    table.push_str("];\n");
     let out = PathBuf::from(env::var("OUT_DIR")?);
     fs::write(out.join("files.rs"), table)?;
     fs::write(out.join("truths.rs"), truths(&root)?)?;
@@ -88,12 +93,16 @@ fn folders_with(folder: &Path, marker: &str) -> Result<Vec<PathBuf>, Box<dyn Err
     Ok(found)
 }
 
-/// Adds the text files directly in `folder`, named relative to `root` with `/`.
+/// Whether a file's name ends in one of these.
+fn has_extension(path: &Path, among: &[&str]) -> bool {
+    path.extension().is_some_and(|extension| among.iter().any(|one| extension == *one))
+}
+
+/// Adds the files directly in `folder`, named relative to `root` with `/`: all but Rust, which the build compiles.
 fn collect(root: &Path, folder: &Path, files: &mut Vec<(String, PathBuf)>) -> Result<(), Box<dyn Error>> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
-        let text = path.extension().is_some_and(|e| e == "ron" || e == "wgsl" || e == "md");
-        if path.is_file() && text {
+        if path.is_file() && path.extension().is_some() && !has_extension(&path, &["rs"]) {
             let parts: Vec<_> = path
                 .strip_prefix(root)?
                 .components()

@@ -42,6 +42,7 @@ fn canonical<T: Send>(name: &str, wgsl: &str, of: impl FnOnce(&naga::Module) -> 
         category: String::new(),
         manifest: empty_manifest(),
         source: Arc::clone(&file),
+        data: IndexMap::new(),
         variants: unit.into(),
     });
     let tree = resolve_root(&catalog, module, &Node::new(name), Place::new(&file))?;

@@ -48,6 +48,8 @@ pub struct Module {
     pub manifest: ModuleManifest,
     /// `module.ron`.
     pub source: Arc<SourceFile>,
+    /// Bytes of the files in its folder that its resources name.
+    pub data: IndexMap<String, Arc<[u8]>>,
     /// Its parsed text.
     pub(crate) variants: Variants,
 }

@@ -29,7 +29,7 @@ impl Catalog {
     /// The recipe stands for no tree, or a file cannot be read. A pass that does not exist is no error here.
     pub fn key(&self, recipe: &Recipe, pass: &str) -> Result<u128, Report> {
         let mut key = Key(SipHasher13::new());
-        for text in ["shadewright key 1", env!("CARGO_PKG_VERSION"), NAGA, pass] {
+        for text in ["shadewright key 2", env!("CARGO_PKG_VERSION"), NAGA, pass] {
             key.text(text);
         }
         let mut reached = Reached::default();
@@ -65,6 +65,11 @@ impl Catalog {
             for (name, (_, value)) in &node.constants {
                 key.text(name);
                 key.text(&value.wgsl());
+            }
+            key.text("");
+            for (name, file) in &node.files {
+                key.text(name);
+                key.text(file);
             }
             key.text("");
             reached.categories.insert(module.category.clone());

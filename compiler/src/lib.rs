@@ -68,6 +68,7 @@
 pub mod canonical;
 pub mod catalog;
 mod contracts;
+pub mod data;
 pub mod diagnostics;
 pub mod emit;
 pub mod hash;

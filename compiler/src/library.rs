@@ -15,6 +15,13 @@ pub trait Library: Send + Sync {
     /// # Errors
     /// Says why a file that is there cannot be read.
     fn read(&self, path: &str) -> Result<Option<String>, String>;
+    /// Bytes of the file, `None` where there is none. A library of texts alone has their bytes.
+    ///
+    /// # Errors
+    /// As for [`Library::read`].
+    fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, String> {
+        Ok(self.read(path)?.map(String::into_bytes))
+    }
     /// As [`Library::read`], for errors that point into the file. A library that makes a text of other files says which part is whose, and
     /// where one of them is wrong.
     ///

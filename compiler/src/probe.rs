@@ -53,6 +53,7 @@ impl Catalog {
             category: String::new(),
             manifest,
             source,
+            data: IndexMap::new(),
             variants: Variants::default(),
         };
         module.variants = self

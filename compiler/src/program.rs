@@ -55,6 +55,12 @@ impl Program {
         why::why(&self.plan, self.reflection(), self.wgsl(), name)
     }
 
+    /// The tree, and the node in it that an instance stands for first.
+    pub(crate) fn node_of(&self, instance: &str) -> Option<(&Tree, usize)> {
+        let found = self.plan.instances.list.iter().find(|i| i.name == instance)?;
+        Some((&self.plan.tree, found.node))
+    }
+
     /// Whether a catalog would compile the recipe to this program again: no edit between the catalogs touches what it is made of.
     pub fn is_current(&self, catalog: &Catalog) -> bool {
         // A module whose interfaces are edited is not kept either.

@@ -63,6 +63,11 @@ impl Library for Folder {
     }
 
     fn read(&self, path: &str) -> Result<Option<String>, String> {
+        let text = |bytes| String::from_utf8(bytes).map_err(|error| format!("{path}: is no UTF-8 text: {error}"));
+        self.bytes(path)?.map(text).transpose()
+    }
+
+    fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, String> {
         let Some(place) = self.place(path)? else {
             return Ok(None);
         };
@@ -78,7 +83,7 @@ impl Library for Folder {
                 about.len()
             ));
         }
-        fs::read_to_string(&place).map(Some).map_err(said)
+        fs::read(&place).map(Some).map_err(said)
     }
 }
 
@@ -133,5 +138,7 @@ mod tests {
         let (base, folder) = sample();
         fs::write(base.path().join("lib/ndf/bad.wgsl"), [0xff, 0xfe, 0x00]).unwrap();
         assert!(folder.read("ndf/bad.wgsl").unwrap_err().contains("bad.wgsl"));
+        assert_eq!(folder.bytes("ndf/bad.wgsl"), Ok(Some(vec![0xff, 0xfe, 0x00])));
+        assert!(folder.bytes("../bad.wgsl").is_err());
     }
 }

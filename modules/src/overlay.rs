@@ -27,6 +27,15 @@ impl Library for Overlay {
         Ok(None)
     }
 
+    fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, String> {
+        for library in &self.0 {
+            if let Some(bytes) = library.bytes(path)? {
+                return Ok(Some(bytes));
+            }
+        }
+        Ok(None)
+    }
+
     fn file(&self, path: &str) -> Result<Option<Arc<SourceFile>>, Report> {
         for library in &self.0 {
             if let Some(file) = library.file(path)? {

@@ -36,4 +36,12 @@ impl Library for Recorded {
         }
         text
     }
+
+    fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, String> {
+        let bytes = self.library.bytes(path);
+        if !matches!(bytes, Ok(None)) {
+            self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned());
+        }
+        bytes
+    }
 }

@@ -10,13 +10,14 @@
 //! - [`frame`]: a frame described by meshes, materials and lights, drawn. Shadow maps and compute passes come from what the
 //!   modules declare.
 //! - [`scene`]: scene files and glTF, and the recipes derived from them.
-//! - [`mesh`], [`image`]: triangles and pictures.
+//! - [`mesh`], [`image`], [`data`]: triangles, pictures and tables of numbers.
 //!
 //! Colours are linear Rec.709 in cd/m2 per channel, lengths in metres, right-handed with y up. The runtime knows no module by
 //! name, owns no window and prints nothing.
 
 #![forbid(unsafe_code)]
 
+pub mod data;
 pub mod frame;
 pub mod gpu;
 pub mod image;

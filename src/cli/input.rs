@@ -43,7 +43,12 @@ pub fn text(path: &Path) -> Result<String, Failure> {
 /// The file cannot be read, or its text is no recipe.
 pub fn recipe(typed: &str) -> Result<Recipe, Failure> {
     let (name, text) = tree(typed, "recipe")?;
-    Ok(Recipe::parse(&name, &text)?)
+    let mut recipe = Recipe::parse(&name, &text)?;
+    // What a file names stands beside it.
+    if let Some(folder) = Path::new(&name).parent().filter(|_| name == typed) {
+        recipe.root.files_below(folder);
+    }
+    Ok(recipe)
 }
 
 /// Name and text of a tree as typed; `kind` names one that stands in no file.

@@ -17,6 +17,7 @@ mod render;
 mod report;
 mod sheet;
 mod show;
+mod table;
 mod text;
 mod timings;
 mod tree;
@@ -87,6 +88,8 @@ enum Command {
     Probe(probe::Options),
     /// Compares modules: speed against error, over experiments that the library declares
     Report(report::Options),
+    /// Writes the numbers that fill a module's buffer, as little-endian 32-bit floats
+    Table(table::Options),
     /// Makes the skeleton of a module's folder
     New(new::Options),
 }
@@ -143,6 +146,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Command::Render(options) => render::run(context(&arguments.modules)?, &options),
         Command::Sheet(options) => sheet::run(context(&arguments.modules)?, &options),
         Command::Report(options) => report::run(&context(&arguments.modules)?, &options),
+        Command::Table(options) => table::run(&context(&arguments.modules)?, &options),
         Command::Probe(options) => probe::run(&context(&arguments.modules)?, &options),
     }
 }

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 
 use super::{Category, Module, Variants};
+use crate::data::numbers;
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::library::{Library, unreadable};
-use crate::manifest::{check_category, check_module, parse_category, parse_module};
+use crate::manifest::{ModuleManifest, Parsed, ResourceKind, Step, check_category, check_module, parse_category, parse_module};
 
 /// What a library declares.
 pub struct Declared {
@@ -73,14 +74,19 @@ fn load_modules(library: &dyn Library, category: &str, found: &mut Vec<Diagnosti
         };
         match parse_module(&path, &text) {
             Ok(parsed) => {
-                if let Err(report) = check_module(&parsed) {
-                    found.extend(report.diagnostics);
-                }
+                let data = match check_module(&parsed) {
+                    Ok(()) => data(library, &parsed, &format!("{category}/{name}"), found),
+                    Err(report) => {
+                        found.extend(report.diagnostics);
+                        IndexMap::new()
+                    }
+                };
                 modules.push(Arc::new(Module {
                     name,
                     category: category.to_owned(),
                     manifest: parsed.value,
                     source: parsed.file,
+                    data,
                     variants: Variants::default(),
                 }));
             }
@@ -88,6 +94,38 @@ fn load_modules(library: &dyn Library, category: &str, found: &mut Vec<Diagnosti
         }
     }
     Ok(modules)
+}
+
+/// Bytes of the files that a module's resources name; those without a format are numbers.
+fn data(library: &dyn Library, parsed: &Parsed<ModuleManifest>, folder: &str, found: &mut Vec<Diagnostic>) -> IndexMap<String, Arc<[u8]>> {
+    let mut data = IndexMap::new();
+    for (name, resource) in &parsed.value.resources {
+        let ResourceKind::Data { file: Some(file), format } = &resource.kind else {
+            continue;
+        };
+        let mut wrong = |code, message: String, label: String| {
+            let path = [Step::Key("resources"), Step::Key(name), Step::Key("kind"), Step::Key("file")];
+            found.push(parsed.error_at(&path, code, message, label));
+        };
+        let path = format!("{folder}/{file}");
+        match library.bytes(&path) {
+            Err(why) => wrong(
+                codes::UNREADABLE_FILE,
+                format!("`{path}` cannot be read: {why}"),
+                "named here".to_owned(),
+            ),
+            Ok(None) => wrong(codes::MISSING_DATA, format!("`{path}` is not there"), "named here".to_owned()),
+            Ok(Some(bytes)) => {
+                if format.is_none()
+                    && let Err(why) = numbers(&bytes)
+                {
+                    wrong(codes::BAD_DATA, format!("`{path}` is no table of numbers"), why);
+                }
+                data.insert(name.clone(), bytes.into());
+            }
+        }
+    }
+    data
 }
 
 /// The error about a folder that holds a module but is no category.

@@ -95,7 +95,7 @@ impl Catalog {
         let manifest = &module.manifest;
         let slots = manifest.slots.values().map(|slot| &slot.interface);
         let mut interfaces = slots.chain(&manifest.uses).chain([&module.category]);
-        if before.source.text != module.source.text {
+        if before.source.text != module.source.text || before.data != module.data {
             return Ok(false);
         }
         let Some(unit) = before.variants.all().pop() else {

@@ -32,6 +32,7 @@ codes! {
     UNKNOWN_FUNCTION = "SW0117", "A category names a function that its interface does not have.";
     BAD_INTERFACE_DEFAULT = "SW0118", "A category gives a default to a struct or member that its interface does not have, or of another type.";
     BAD_DISPATCH = "SW0119", "A compute pass names no compute entry point of its module.";
+    BAD_DATA_KIND = "SW0120", "A resource of kind `Data` that says neither file nor format, whose file is not in the module's folder, or that is a category's.";
 
     UNKNOWN_MODULE = "SW0201", "A module that the library does not have.";
     WRONG_CATEGORY = "SW0202", "A module of another category than its slot takes.";
@@ -46,6 +47,8 @@ codes! {
     NOT_A_ROOT = "SW0211", "The recipe's root has no entry points, or is asked for a pass that it does not have.";
     UNKNOWN_PASS_OF_RECIPE = "SW0212", "No module of the recipe declares a pass of this name.";
     UNKNOWN_PROBE = "SW0213", "The root's interface has no function of this name.";
+    UNKNOWN_FILE = "SW0214", "A recipe names a file for something that takes none.";
+    MISSING_FILE = "SW0215", "A module's data that are in no file: the recipe must name one.";
 
     UNKNOWN_PARAM = "SW0301", "A parameter that the module does not have.";
     PARAM_OUT_OF_RANGE = "SW0302", "A parameter's value is outside its range.";
@@ -74,6 +77,7 @@ codes! {
     WESL_CONDITION = "SW0418", "A condition of WESL that is malformed, or that asks for a feature which is not declared.";
     WESL_DECLARATION = "SW0419", "A `wesl.ron` that is no RON, or says something unknown.";
     WESL_AND_WGSL = "SW0420", "A module with both a WESL and a WGSL file.";
+    BAD_DATA_TYPE = "SW0421", "A resource of kind `Data` that is no read-only storage buffer with an array of floats without gaps.";
 
     LINKED_INVALID = "SW0501", "The linked module does not pass validation.";
     CAPABILITY_UNDECLARED = "SW0502", "A module uses a capability that its manifest does not declare.";
@@ -95,6 +99,8 @@ codes! {
     MISSING_MANIFEST = "SW0802", "A module's folder without `module.ron`.";
     MISSING_INTERFACE = "SW0803", "A category without `interface.wgsl`.";
     UNREADABLE_FILE = "SW0804", "A file that is there but cannot be read.";
+    MISSING_DATA = "SW0805", "A file of numbers that a manifest names is not there.";
+    BAD_DATA = "SW0806", "A file of numbers that is cut off, holds what is no finite number, or has not as many as its buffer takes.";
 
     SCENE_INVALID = "SW0901", "A scene says something that cannot be.";
     UNKNOWN_SCENE_NAME = "SW0902", "A scene refers to a name that it does not declare.";
@@ -102,6 +108,8 @@ codes! {
     ASSET_UNSUPPORTED = "SW0904", "A file that a scene names uses something that is not taken.";
     BAD_INPUT_TABLE = "SW0905", "A table of inputs does not fit the function's arguments.";
     BAD_OVERRIDE_PATH = "SW0906", "A `--set` path that leads nowhere in the scene.";
+    BAD_DATA_FILE = "SW0907", "A file of data that a recipe or scene names is missing, damaged, or does not fill its buffer.";
+    UNKNOWN_FORMAT = "SW0908", "A format of data that no decoder reads.";
 
     BAD_CHOICE = "SW1001", "A choice that offers nothing, or whose bounds contradict one another or what it offers.";
     BAD_VALUES = "SW1002", "A list or range of values that holds none, or too many, or whose ends or steps contradict one another.";

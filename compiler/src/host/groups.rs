@@ -25,7 +25,7 @@ pub fn write(text: &mut Text, pass: &Pass, names: &Names) -> Result<(), Report> 
         write_group(text, pass, names, group, &bindings)?;
     }
     for binding in &pass.reflection.bindings {
-        resource(text, binding);
+        resource(text, pass, binding);
     }
     Ok(())
 }
@@ -330,8 +330,10 @@ fn storage_format(name: &str) -> Option<String> {
 }
 
 /// Writes what a module says of a resource that the host makes: samplers, and sizes of buffers.
-fn resource(text: &mut Text, binding: &Binding) {
-    let Fill::Resource { declared, .. } = &binding.fill else { return };
+fn resource(text: &mut Text, pass: &Pass, binding: &Binding) {
+    let Fill::Resource { instance, declared, .. } = &binding.fill else {
+        return;
+    };
     match declared {
         ResourceKind::Sampler { linear, repeat, compare } => {
             let filter = if *linear { "Linear" } else { "Nearest" };
@@ -361,6 +363,20 @@ fn resource(text: &mut Text, binding: &Binding) {
                 binding.name
             ));
             text.line(&format!("pub const BYTES_{}: u64 = {bytes};", binding.name.to_uppercase()));
+        }
+        ResourceKind::Data {
+            file: Some(file),
+            format: None,
+        } => {
+            let of = pass.reflection.instances.iter().find(|of| Some(&of.name) == instance.as_ref());
+            let folder = of.map_or_else(String::new, |of| format!("{}/{}/", of.category, of.module));
+            text.blank();
+            text.doc(&format!(
+                "File of the library with the little-endian 32-bit floats that fill `{}`.",
+                binding.name
+            ));
+            let path = format!("{folder}{file}");
+            text.line(&format!("pub const FILE_{}: &str = {path:?};", binding.name.to_uppercase()));
         }
         _ => {}
     }

@@ -25,6 +25,17 @@ pub fn check_category(parsed: &Parsed<CategoryManifest>) -> Result<(), Report> {
     let mut found = Vec::new();
     group(parsed, &[Key("group")], parsed.value.group, &mut found);
     resources(parsed, &parsed.value.resources, &IndexMap::new(), &mut found);
+    for (name, resource) in &parsed.value.resources {
+        if matches!(resource.kind, ResourceKind::Data { .. }) {
+            let path = [Key("resources"), Key(name), Key("kind")];
+            let message = format!("`{name}` cannot be `Data`");
+            found.push(
+                parsed
+                    .error_at(&path, codes::BAD_DATA_KIND, message, "in a category")
+                    .note("a module has files in its folder; a category's resources are its modules' and the host's"),
+            );
+        }
+    }
     Report::unless_empty(found)
 }
 
@@ -216,6 +227,9 @@ fn resources<T>(
         if let Some(number) = resource.group {
             group(parsed, &[path[0], path[1], Key("group")], number, found);
         }
+        if let ResourceKind::Data { file, format } = &resource.kind {
+            data(parsed, path, (file.as_deref(), format.is_some()), found);
+        }
         if let ResourceKind::Depth { pass } | ResourceKind::Views { pass } = &resource.kind
             && !matches!(passes.get(pass), Some(PassDecl::Draw { .. }))
         {
@@ -239,6 +253,34 @@ fn resources<T>(
                     .suggest(pass, "passes that draw", draws),
             );
         }
+    }
+}
+
+fn data<T>(parsed: &Parsed<T>, [resources, name]: [Step; 2], (file, has_format): (Option<&str>, bool), found: &mut Vec<Diagnostic>) {
+    let Key(shown) = name else { return };
+    let kind = [resources, name, Key("kind")];
+    match file {
+        None if !has_format => found.push(
+            parsed
+                .error_at(
+                    &kind,
+                    codes::BAD_DATA_KIND,
+                    format!("nothing fills `{shown}`"),
+                    "neither `file` nor `format`",
+                )
+                .note("`Data(file: \"NAME.f32\")` is the module's own table, `Data(format: \"NAME\")` a file that a recipe names"),
+        ),
+        Some(file) if file.is_empty() || file == "." || file == ".." || file.contains(['/', '\\']) => found.push(
+            parsed
+                .error_at(
+                    &[resources, name, Key("kind"), Key("file")],
+                    codes::BAD_DATA_KIND,
+                    format!("`{file}` is no file of the module's folder"),
+                    "not a file's bare name",
+                )
+                .note("put the file beside `module.ron`"),
+        ),
+        _ => {}
     }
 }
 

@@ -48,6 +48,16 @@ pub struct ModuleManifest {
     pub represents: Vec<String>,
 }
 
+impl ModuleManifest {
+    /// The format of the files that whoever uses the module may name for this resource; `None` where none may be named.
+    pub fn format_of(&self, resource: &str) -> Option<&str> {
+        match &self.resources.get(resource)?.kind {
+            ResourceKind::Data { format, .. } => format.as_deref(),
+            _ => None,
+        }
+    }
+}
+
 /// A hole in a module, typed by an interface.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -209,6 +219,17 @@ pub enum ResourceKind {
     Buffer {
         /// Size in bytes.
         bytes: u64,
+    },
+    /// A read-only storage buffer of 32-bit floats from a file: the module's own, or one that whoever uses the module names under the
+    /// resource's name. At least one of the fields is there.
+    Data {
+        /// File in the module's folder: its table or, with `format`, what is read where nobody names another.
+        #[serde(default)]
+        file: Option<String>,
+        /// How the file's bytes become numbers; then a file may be named by whoever uses the module. Without it the file is the module's own,
+        /// little-endian 32-bit floats.
+        #[serde(default)]
+        format: Option<String>,
     },
 }
 

@@ -1,5 +1,7 @@
 //! Recipes: trees of chosen modules with frozen parameters.
 
+use std::path::Path;
+
 use indexmap::IndexMap;
 use serde::de::{self, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -20,6 +22,9 @@ pub struct Node {
     /// Parameters that become constants, with their values.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub freeze: IndexMap<String, Value>,
+    /// Files by the name of the module's resource, for resources that take files of whoever uses the module. The compiler does not read them.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub files: IndexMap<String, String>,
     /// Keeps this subtree apart from an equal one, so that both have parameters of their own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
@@ -32,7 +37,21 @@ impl Node {
             module: module.into(),
             fill: IndexMap::new(),
             freeze: IndexMap::new(),
+            files: IndexMap::new(),
             label: None,
+        }
+    }
+
+    /// Puts a folder before the relative paths of all files that the tree names.
+    pub fn files_below(&mut self, folder: &Path) {
+        for file in self.files.values_mut() {
+            *file = folder.join(&*file).to_string_lossy().into_owned();
+        }
+        for filling in self.fill.values_mut() {
+            match filling {
+                Filling::One(node) => node.files_below(folder),
+                Filling::Many(nodes) => nodes.iter_mut().for_each(|node| node.files_below(folder)),
+            }
         }
     }
 }
@@ -45,6 +64,8 @@ struct NodeFields {
     fill: IndexMap<String, Filling>,
     #[serde(default)]
     freeze: IndexMap<String, Value>,
+    #[serde(default)]
+    files: IndexMap<String, String>,
     #[serde(default)]
     label: Option<String>,
 }
@@ -65,12 +86,14 @@ impl<'de> Deserialize<'de> for Node {
                     module,
                     fill,
                     freeze,
+                    files,
                     label,
                 } = NodeFields::deserialize(MapAccessDeserializer::new(map))?;
                 Ok(Node {
                     module,
                     fill,
                     freeze,
+                    files,
                     label,
                 })
             }

@@ -11,6 +11,7 @@ use crate::catalog::{Catalog, Category, Module};
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::manifest::Resource;
 use crate::parse::Origin;
+use crate::resolve::check_data;
 
 /// Names of the bind groups' parameter blocks, by group: frame, lights and shadows, material, pass.
 pub const GROUPS: [&str; 4] = ["frame", "light", "material", "pass"];
@@ -106,6 +107,9 @@ pub fn allocate(catalog: &Catalog, plan: &mut Plan) -> Result<(), Report> {
             if bound && binding.is_none() {
                 let group;
                 (group, declared) = place(catalog, plan, home, handle)?;
+                if let Some(Declared::Module(module, index)) = &declared {
+                    check_data(module, *index, unit, handle)?;
+                }
                 let number = &mut next[group as usize];
                 binding = Some((group, *number));
                 *number += 1;

@@ -224,6 +224,7 @@ fn instances(plan: &Plan) -> Vec<Instance> {
                 category: node.module.category.clone(),
                 paths: instance.nodes.iter().map(|&n| plan.tree.path(n)).collect(),
                 fields: node.module.manifest.instances.clone(),
+                files: node.files.clone(),
             }
         })
         .collect()

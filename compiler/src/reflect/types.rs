@@ -301,6 +301,9 @@ pub struct Instance {
     /// Fields of `instances[i]`, where the module has any.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub fields: IndexMap<String, Param>,
+    /// Files that the recipe names for its resources, as it names them.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub files: IndexMap<String, String>,
 }
 
 /// A pass that must run before.

@@ -69,6 +69,7 @@ impl Resolver<'_> {
             return Err(bad_label(label, &place(&self.tree)));
         }
         unknown_slots(&module, node.fill.keys(), || place(&self.tree))?;
+        unknown_files(&module, node.files.keys(), || place(&self.tree))?;
         self.tree.nodes.push(TreeNode {
             module: Arc::clone(&module),
             parent,
@@ -76,6 +77,7 @@ impl Resolver<'_> {
             fills: Vec::with_capacity(module.manifest.slots.len()),
             variant: Variants::key(&constants),
             constants,
+            files: node.files.clone(),
             label: node.label.clone(),
         });
         for slot in 0..module.manifest.slots.len() {
@@ -176,6 +178,27 @@ pub fn unknown_slots<'a>(module: &Module, names: impl IntoIterator<Item = &'a St
                 Diagnostic::new(codes::UNKNOWN_SLOT, format!("`{}` has no slot `{name}`", module.name))
                     .at(&place.file, span, "no such slot")
                     .suggest(name, "slots", known)
+                    .into(),
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Finds files for what takes none.
+fn unknown_files<'a>(module: &Module, names: impl IntoIterator<Item = &'a String>, place: impl Fn() -> Place) -> Result<(), Report> {
+    for name in names {
+        if module.manifest.format_of(name).is_none() {
+            let at = place().keys(&["files", name]);
+            let known = module
+                .manifest
+                .resources
+                .keys()
+                .filter(|name| module.manifest.format_of(name).is_some());
+            return Err(
+                Diagnostic::new(codes::UNKNOWN_FILE, format!("`{}` takes no file `{name}`", module.name))
+                    .at(&at.file, at.key_span(), "no such resource")
+                    .suggest(name, "resources that take a file", known.map(String::as_str))
                     .into(),
             );
         }

@@ -29,7 +29,7 @@ pub struct Instances {
 }
 
 impl Instances {
-    /// Equal subtrees are one instance, unless a label tells them apart, a texture of their own does (a scene names
+    /// Equal subtrees are one instance, unless a label tells them apart, files do, a texture of their own does (a scene names
     /// textures by place), they are offered functions by different owners, or they hold the shadow maps of different
     /// kinds of lights, which are numbered by light.
     pub fn find(catalog: &Catalog, tree: &Tree) -> Self {
@@ -95,7 +95,8 @@ fn structures(tree: &Tree) -> Vec<usize> {
         let slots = node.fills.iter().map(|nodes| nodes.iter().map(|&child| numbers[child]).collect());
         let slots: Vec<Vec<usize>> = slots.collect();
         let next = known.len();
-        let key = (&node.module.category, &node.module.name, &node.label, &node.variant, slots);
+        let files: Vec<_> = node.files.iter().collect();
+        let key = (&node.module.category, &node.module.name, &node.label, &node.variant, files, slots);
         numbers[index] = *known.entry(key).or_insert(next);
     }
     numbers

@@ -17,7 +17,7 @@ use crate::manifest::{Arity, Locator, Slot, Step, Typed, Value};
 
 pub use fill::{resolve, resolve_root};
 pub use instances::{Instance, Instances};
-pub use resources::check_resources;
+pub use resources::{check_data, check_resources};
 
 /// A step into a RON text, owned.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -122,6 +122,8 @@ pub struct TreeNode {
     pub constants: IndexMap<String, (Value, Typed)>,
     /// What tells these constants from others.
     pub variant: Constants,
+    /// Files by resource, for those that take files of the recipe.
+    pub files: IndexMap<String, String>,
     /// Keeps it apart from an equal subtree.
     pub label: Option<String>,
 }

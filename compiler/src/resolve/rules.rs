@@ -46,6 +46,7 @@ fn equal(tree: &Tree, a: usize, b: usize) -> bool {
         || Arc::ptr_eq(&x.module, &y.module)
             && x.label == y.label
             && x.variant == y.variant
+            && x.files == y.files
             && p.iter().map(Vec::len).eq(q.iter().map(Vec::len))
             && p.iter().flatten().zip(q.iter().flatten()).all(|(&c, &d)| equal(tree, c, d))
 }

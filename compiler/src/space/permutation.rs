@@ -94,6 +94,7 @@ fn build(tree: &Tree, id: ExprId, picks: &Picks, nodes: &mut Vec<Node>) {
                 module: module.name.clone(),
                 fill: IndexMap::new(),
                 freeze: IndexMap::new(),
+                files: IndexMap::new(),
                 label: module.label.clone(),
             };
             for part in module.parts.iter().filter(|part| !part.implicit) {

@@ -53,6 +53,10 @@ impl<L: Library> Library for Wesl<L> {
         }
     }
 
+    fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, String> {
+        self.0.bytes(path)
+    }
+
     fn file(&self, path: &str) -> Result<Option<Arc<SourceFile>>, Report> {
         let plain = self.0.file(path)?;
         let Some(module) = module(path) else {

@@ -48,13 +48,15 @@ pub struct Material {
     pub settings: Settings,
 }
 
-/// Values of parameters and textures. What is not here has the module's default; a texture that is not here is white.
+/// Values of parameters, textures and data. What is not here has the module's default; a texture that is not here is white.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
     /// By place (`main.material`) or name of the instance, then by parameter.
     pub params: IndexMap<String, IndexMap<String, Value>>,
     /// By place or name of the instance, then by the name of the resource.
     pub textures: IndexMap<String, IndexMap<String, Arc<Texture>>>,
+    /// By place or name of the instance, then by the name of the resource: see [`crate::data`].
+    pub data: IndexMap<String, IndexMap<String, Arc<[f32]>>>,
 }
 
 /// An object.

@@ -119,6 +119,11 @@ impl Filler<'_> {
                             None => stand_in(self.gpu, binding),
                         }
                     }
+                    ResourceKind::Data { .. } => {
+                        let given = instance(reflection, of).and_then(|i| setting(&look.settings.data, i, resource));
+                        let data = look.program.data(binding).ok_or_else(|| unknown_instance(binding, of))?;
+                        Ok(Bound::Buffer(self.uploads.data(self.gpu, given, &data)?))
+                    }
                     ResourceKind::Sampler { linear, repeat, compare } => Ok(sampler(self.gpu, *linear, *repeat, *compare)?),
                     ResourceKind::Depth { pass } => self.depth(binding, look, of, pass),
                     ResourceKind::Views { pass } => {

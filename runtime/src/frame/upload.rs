@@ -1,9 +1,13 @@
-//! Meshes and textures on the GPU, kept as long as frames show them.
+//! Meshes, textures and tables on the GPU, kept as long as frames show them.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use shadewright_compiler::Report;
+use shadewright_compiler::data::{Data, Origin, fits};
+
 use super::{Mesh, Texture};
+use crate::data::load;
 use crate::gpu::{DataError, Gpu, GpuError, RuntimeError};
 use crate::image::mip_levels;
 
@@ -24,7 +28,16 @@ pub(crate) const ATTRIBUTES: [&str; 4] = ["positions", "normals", "tangents", "t
 pub(crate) struct Uploads {
     meshes: HashMap<usize, (Arc<Mesh>, Arc<GpuMesh>, u64)>,
     textures: HashMap<(usize, bool), (Arc<Texture>, wgpu::TextureView, u64)>,
+    /// By the address of what it was made from: a scene's numbers, or a module's file.
+    data: HashMap<usize, (DataOwner, wgpu::Buffer, u64)>,
     frame: u64,
+}
+
+/// Keeps an address from being used again.
+#[derive(Debug)]
+enum DataOwner {
+    Given(#[allow(dead_code, reason = "held, not read")] Arc<[f32]>),
+    Module(#[allow(dead_code, reason = "held, not read")] Arc<[u8]>),
 }
 
 impl Uploads {
@@ -38,6 +51,7 @@ impl Uploads {
         let frame = self.frame;
         self.meshes.retain(|_, (_, _, used)| *used == frame);
         self.textures.retain(|_, (_, _, used)| *used == frame);
+        self.data.retain(|_, (_, _, used)| *used == frame);
     }
 
     /// The mesh's buffers; `path` names it in errors.
@@ -61,6 +75,29 @@ impl Uploads {
         }
         let made = upload_texture(gpu, texture, srgb, path)?;
         self.textures.insert(key, (Arc::clone(texture), made.clone(), self.frame));
+        Ok(made)
+    }
+
+    /// The buffer of a binding of kind `Data`: with the numbers that are given for it, or else with those of the module's own file.
+    pub fn data(&mut self, gpu: &Gpu, given: Option<&Arc<[f32]>>, data: &Data) -> Result<wgpu::Buffer, RuntimeError> {
+        let (key, owner) = match (given, &data.origin) {
+            (Some(numbers), _) => (numbers.as_ptr().addr(), DataOwner::Given(Arc::clone(numbers))),
+            (None, Origin::Module { bytes, .. }) => (bytes.as_ptr().addr(), DataOwner::Module(Arc::clone(bytes))),
+            (None, _) => return Err(Report::from(data.unnamed()).into()),
+        };
+        if let Some((_, made, used)) = self.data.get_mut(&key) {
+            *used = self.frame;
+            return Ok(made.clone());
+        }
+        let numbers = match given {
+            Some(numbers) => {
+                fits(data.layout, numbers.len()).map_err(|why| DataError::new(&data.name, why))?;
+                Arc::clone(numbers)
+            }
+            None => load(data).map_err(Report::from)?,
+        };
+        let made = gpu.buffer(&data.name, wgpu::BufferUsages::STORAGE, bytemuck::cast_slice(&numbers), 0)?;
+        self.data.insert(key, (owner, made.clone(), self.frame));
         Ok(made)
     }
 }

@@ -13,6 +13,9 @@ use crate::gpu::pack::Shape;
 /// Rows that one machine evaluates after one another.
 const ROWS: usize = 64;
 
+/// Numbers of a table for which a machine evaluates a row more: copying them takes about as long as that row.
+const NUMBERS: usize = 512;
+
 /// Results of a table: one of each for each row, in their order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Evaluated<N> {
@@ -147,7 +150,7 @@ impl Probe {
                 own = self.compiled(batch)?;
                 &own
             };
-            let chunks: Vec<&[usize]> = batch.rows.chunks(ROWS).collect();
+            let chunks: Vec<&[usize]> = batch.rows.chunks(self.rows_together()).collect();
             let evaluated: Vec<Vec<Row<N>>> = chunks
                 .par_iter()
                 .map(|rows| self.evaluate(program, table, batch, rows))
@@ -158,6 +161,12 @@ impl Probe {
         }
         // Every row is in a batch.
         Ok(results.into_iter().flatten().collect())
+    }
+
+    /// Rows that one machine evaluates: more where a machine has large tables to begin with.
+    fn rows_together(&self) -> usize {
+        let numbers: usize = self.data.values().map(|numbers| numbers.len()).sum();
+        ROWS.max(numbers / NUMBERS)
     }
 
     /// The program with a batch's pipeline constants.
@@ -185,6 +194,9 @@ impl Probe {
                 }
                 Fill::Resource { .. } => None,
             };
+            if let Some(numbers) = self.data.get(&(group, number)) {
+                machine.bind_buffer(group, number, bytemuck::cast_slice(numbers))?;
+            }
             if let Some(bytes) = bytes {
                 machine.bind_buffer(group, number, bytes)?;
             }

@@ -120,6 +120,13 @@ impl Probe {
                     declared: ResourceKind::Sampler { linear, repeat, compare },
                     ..
                 } => sampler(gpu, *linear, *repeat, *compare)?,
+                Fill::Resource {
+                    declared: ResourceKind::Data { .. },
+                    ..
+                } => {
+                    let numbers = self.data.get(&place).map_or(&[][..], |numbers| numbers);
+                    Bound::Buffer(gpu.buffer(&binding.name, U::STORAGE, bytemuck::cast_slice(numbers), 0)?)
+                }
                 Fill::Resource { .. } => stand_in(gpu, binding)?,
             })
         };

@@ -14,10 +14,12 @@ mod numbers;
 mod table;
 mod time;
 
-use std::sync::OnceLock;
+use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
 
 use naga::Expression;
 use serde_json::{Value as Json, json};
+use shadewright_compiler::Report;
 use shadewright_compiler::catalog::Catalog;
 use shadewright_compiler::manifest::ResourceKind;
 use shadewright_compiler::program::{Program, Recipe};
@@ -25,6 +27,7 @@ use shadewright_compiler::reflect::{Binding, BindingType, Fill, Layout};
 use shadewright_evaluate::cost::{Analysis, cost_of_function};
 use shadewright_evaluate::{EvaluateError, Program as Evaluator};
 
+use crate::data;
 use crate::gpu::pack::unpack;
 use crate::gpu::pipeline::Pipelines;
 use crate::gpu::{Gpu, GpuError, RuntimeError};
@@ -51,6 +54,8 @@ pub struct Probe {
     result: Layout,
     /// The result's numbers.
     numbers: Vec<Number>,
+    /// Numbers of the bindings of kind `Data`, by group and binding.
+    data: HashMap<(u32, u32), Arc<[f32]>>,
     /// The program for the CPU, without pipeline constants.
     evaluator: OnceLock<Result<Evaluator, EvaluateError>>,
 }
@@ -59,7 +64,7 @@ impl Probe {
     /// Links the program that evaluates a function of the interface that the recipe's root has.
     ///
     /// # Errors
-    /// The recipe or the function is wrong, or no buffer holds the function's result.
+    /// The recipe or the function is wrong, a file of data cannot be used, or no buffer holds the function's result.
     pub fn new(catalog: &Catalog, recipe: &Recipe, function: &str) -> Result<Self, RuntimeError> {
         let program = catalog.compile_probe(recipe, function)?;
         let names = Names::of(catalog, program.reflection());
@@ -71,8 +76,10 @@ impl Probe {
             what: "probing".into(),
             needs: "a result that a buffer can hold".into(),
         })?;
+        let data = data::load_all(&program).map_err(Report::from)?;
         Ok(Self {
             function: function.to_owned(),
+            data: data.into_iter().collect(),
             arguments: element(INPUT),
             numbers: result.members.iter().flat_map(|value| numbers(&value.layout)).collect(),
             result,
@@ -115,6 +122,13 @@ impl Probe {
             });
         // A probe calls its function, which has a result: without one there is no output.
         called.map_or_else(Analysis::default, |function| cost_of_function(module, info, function))
+    }
+
+    /// The tables that fill bindings of kind `Data`, in the order of group and binding.
+    pub fn tables(&self) -> Vec<&[f32]> {
+        let mut tables: Vec<_> = self.data.iter().collect();
+        tables.sort_by_key(|(place, _)| **place);
+        tables.into_iter().map(|(_, numbers)| &**numbers).collect()
     }
 
     /// Names of a result's numbers, in the order in which [`Probe::on_gpu`] gives them: empty for a scalar, `x` of a vector, `diffuse.x` of a

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::data::{DecodeError, read};
 use crate::frame::Texture;
 use crate::image::decode_texture;
 use crate::mesh::gltf::{self, Asset, GltfError};
@@ -16,6 +17,7 @@ pub const MAX_PICTURE: u64 = 256 << 20;
 pub(super) struct Assets {
     folder: PathBuf,
     textures: HashMap<String, Arc<Texture>>,
+    data: HashMap<(String, String), Arc<[f32]>>,
     gltf: HashMap<String, Arc<Asset>>,
 }
 
@@ -45,6 +47,20 @@ impl Assets {
         let texture = Arc::new(decode_texture(&bytes).map_err(|e| e.to_string())?);
         self.textures.insert(file.to_owned(), Arc::clone(&texture));
         Ok(texture)
+    }
+
+    /// Numbers in a file of this format.
+    ///
+    /// # Errors
+    /// As for [`read`].
+    pub(super) fn data(&mut self, file: &str, format: &str) -> Result<Arc<[f32]>, DecodeError> {
+        let key = (file.to_owned(), format.to_owned());
+        if let Some(known) = self.data.get(&key) {
+            return Ok(Arc::clone(known));
+        }
+        let numbers: Arc<[f32]> = read(&self.folder.join(file), format)?.into();
+        self.data.insert(key, Arc::clone(&numbers));
+        Ok(numbers)
     }
 
     /// A glTF file.

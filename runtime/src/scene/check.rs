@@ -9,6 +9,7 @@ use shadewright_compiler::{Catalog, Module};
 
 use super::assets::Assets;
 use super::{Choice, Choices, Picture, Scene};
+use crate::data::diagnose;
 
 /// A scene under examination.
 pub(super) struct Examiner<'a> {
@@ -107,6 +108,7 @@ impl<'a> Examiner<'a> {
                 self.error(&at, codes::ASSET_UNREADABLE, format!("the picture `{file}` cannot be read"), why);
             }
         }
+        self.files(choice, &module, path);
     }
 
     /// Checks what fills a module's slots.
@@ -139,6 +141,44 @@ impl<'a> Examiner<'a> {
                         self.choice(one, Some(&slot.interface), &join(&at, &[Step::Index(i)]));
                     }
                 }
+            }
+        }
+    }
+
+    /// Checks the files of data that a choice names, and that it names those without which its module cannot do.
+    fn files(&mut self, choice: &Choice, module: &Module, path: &[Step]) {
+        let resources = &module.manifest.resources;
+        for (name, file) in &choice.files {
+            let at = join(path, &[Step::Key("files"), Step::Key(name)]);
+            let Some(format) = module.manifest.format_of(name) else {
+                let known = resources.keys().filter(|name| module.manifest.format_of(name).is_some());
+                let span = self
+                    .parsed
+                    .places
+                    .find_key(&at)
+                    .unwrap_or_else(|| self.parsed.places.find_near(&at));
+                self.errors.push(
+                    Diagnostic::new(codes::UNKNOWN_FILE, format!("`{}` takes no file `{name}`", module.name))
+                        .at(&self.parsed.file, span, "no such resource")
+                        .suggest(name, "resources that take a file", known.map(String::as_str)),
+                );
+                continue;
+            };
+            if let Err(error) = self.assets.data(file, format) {
+                let located = |code, message, label| self.parsed.error_at(&at, code, message, label);
+                let found = diagnose(file, &error, located);
+                self.errors.push(found);
+            }
+        }
+        for (name, resource) in resources {
+            if let ResourceKind::Data { file: None, format } = &resource.kind
+                && !choice.files.contains_key(name)
+            {
+                let format = format.as_deref().unwrap_or_default();
+                let message = format!("`{}.{name}` needs a file of the format `{format}`", module.name);
+                let named = join(path, &[Step::Key("module")]);
+                let found = self.parsed.error_at(&named, codes::MISSING_FILE, message, "none is named here");
+                self.errors.push(found.note(format!("name one: `files: {{\"{name}\": \"PATH\"}}`")));
             }
         }
     }

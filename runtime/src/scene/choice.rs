@@ -9,10 +9,10 @@ use std::sync::Arc;
 
 use crate::frame::Texture;
 
-/// One module: a recipe's node and, beside it, the values of the parameters that stay changeable and the pictures of its textures.
+/// One module: a recipe's node and, beside it, the values of the parameters that stay changeable and the files of its textures and data.
 ///
 /// In RON either the module's name alone, `"ggx"`, or
-/// `(module: "pcf", fill: {...}, freeze: {"radius": 2}, params: {...}, textures: {"image": "wood.png"}, label: "a")`.
+/// `(module: "pcf", fill: {...}, freeze: {"radius": 2}, params: {...}, textures: {"image": "wood.png"}, files: {"measured": "gold.f32"}, label: "a")`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Choice {
     /// Name of the module.
@@ -25,6 +25,8 @@ pub struct Choice {
     pub params: IndexMap<String, Value>,
     /// Pictures by the name of the module's resource.
     pub textures: IndexMap<String, Picture>,
+    /// Files of data by the name of the module's resource, relative to the scene's folder.
+    pub files: IndexMap<String, String>,
     /// Keeps this subtree apart from an equal one.
     pub label: Option<String>,
 }
@@ -86,6 +88,8 @@ struct Fields {
     #[serde(default)]
     textures: IndexMap<String, Picture>,
     #[serde(default)]
+    files: IndexMap<String, String>,
+    #[serde(default)]
     label: Option<String>,
 }
 
@@ -97,6 +101,7 @@ impl From<Fields> for Choice {
             freeze: f.freeze,
             params: f.params,
             textures: f.textures,
+            files: f.files,
             label: f.label,
         }
     }

@@ -282,6 +282,7 @@ impl Maker<'_> {
             settings: Settings {
                 params: planter.settings.params,
                 textures: planter.settings.textures,
+                data: planter.settings.data,
             },
         });
         self.made.insert(key, self.materials.len() - 1);

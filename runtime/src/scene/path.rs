@@ -6,12 +6,13 @@ use shadewright_compiler::diagnostics::{Diagnostic, SourceFile, codes};
 use shadewright_compiler::manifest::{Locator, Step, ron_options};
 
 /// Keys whose values are maps, which are written in braces and may be made where they are missing.
-const MAPS: [&str; 9] = [
+const MAPS: [&str; 10] = [
     "params",
     "fields",
     "freeze",
     "fill",
     "textures",
+    "files",
     "visibility",
     "materials",
     "meshes",

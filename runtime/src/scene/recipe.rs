@@ -10,7 +10,7 @@ use crate::frame::Settings;
 
 /// Makes the nodes of one recipe.
 ///
-/// The linker takes equal subtrees for one. Where a scene gives two equal subtrees different parameters or pictures, the later one gets a
+/// The linker takes equal subtrees for one. Where a scene gives two equal subtrees different parameters or files, the later one gets a
 /// label, so that each keeps its own.
 #[derive(Clone, Default)]
 pub(super) struct Planter {
@@ -69,6 +69,15 @@ impl Planter {
         }
         if !textures.is_empty() {
             self.settings.textures.insert(place.to_owned(), textures);
+        }
+        let mut data = IndexMap::new();
+        for (name, file) in &choice.files {
+            if let Some(format) = module.and_then(|m| m.manifest.format_of(name)) {
+                data.extend(assets.data(file, format).ok().map(|numbers| (name.clone(), numbers)));
+            }
+        }
+        if !data.is_empty() {
+            self.settings.data.insert(place.to_owned(), data);
         }
         self.keep_apart(&mut node, choice, place);
         node

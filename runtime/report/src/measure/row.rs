@@ -242,7 +242,7 @@ pub(crate) fn measure(subject: &Subject, device: Option<OnDevice>, effort: &Effo
     Ok(Measured { row, agreement })
 }
 
-/// What a row's results depend on, in one word: the linked function, the inputs, what they should give, the device, the effort.
+/// What a row's results depend on, in one word: the linked function, its tables, the inputs, what they should give, the device, the effort.
 pub(crate) fn key(subject: &Subject, rows: &[Json], effort: &Effort, provenance: &Provenance) -> Result<String, MeasureError> {
     let mut hasher = SipHasher13::new();
     let Provenance {
@@ -250,6 +250,9 @@ pub(crate) fn key(subject: &Subject, rows: &[Json], effort: &Effort, provenance:
     } = provenance;
     (device, driver, version, format!("{effort:?}"), subject.probe.program().hash()).hash(&mut hasher);
     (oracles::DIGEST, format!("{:?}", subject.metric())).hash(&mut hasher);
+    for number in subject.probe.tables().into_iter().flatten() {
+        number.to_bits().hash(&mut hasher);
+    }
     for row in rows {
         row.to_string().hash(&mut hasher);
     }
@@ -266,7 +269,7 @@ pub(crate) fn key(subject: &Subject, rows: &[Json], effort: &Effort, provenance:
 /// The recipe as a person would type it: the bare name, or RON.
 pub(super) fn recipe_text(subject: &Subject) -> String {
     let node = &subject.alternative.recipe.root;
-    if node.fill.is_empty() && node.freeze.is_empty() {
+    if node.fill.is_empty() && node.freeze.is_empty() && node.files.is_empty() {
         return node.module.clone();
     }
     subject
