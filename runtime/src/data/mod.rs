@@ -2,6 +2,8 @@
 //!
 //! A decoder turns the bytes of a format into 32-bit floats. [`FORMATS`] is the list of them; a module's manifest names one.
 
+pub mod photometry;
+
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -21,7 +23,7 @@ pub type Decoder = fn(&[u8]) -> Result<Vec<f32>, String>;
 pub const PLAIN: &str = "f32";
 
 /// Every format by name.
-pub const FORMATS: &[(&str, Decoder)] = &[(PLAIN, data::numbers)];
+pub const FORMATS: &[(&str, Decoder)] = &[(PLAIN, data::numbers), ("photometry", photometry::decode)];
 
 /// Why bytes are no numbers.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
