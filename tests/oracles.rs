@@ -134,7 +134,11 @@ fn spots() {
     near(1400.0 / cone_solid_angle(deg(30.0)), 1663.12813, 1e-8);
     near(cone_solid_angle(PI), 4.0 * PI, 1e-15);
     let versine = |x: f64| 1.0 - deg(x).cos();
-    near(cone_ramp(versine(30.0), versine(20.0), versine(40.0)), (deg(30.0).cos() - deg(40.0).cos()) / (deg(20.0).cos() - deg(40.0).cos()), 1e-14);
+    near(
+        cone_ramp(versine(30.0), versine(20.0), versine(40.0)),
+        (deg(30.0).cos() - deg(40.0).cos()) / (deg(20.0).cos() - deg(40.0).cos()),
+        1e-14,
+    );
     assert_eq!(cone_ramp(versine(41.0), versine(20.0), versine(40.0)), 0.0);
     assert_eq!(cone_ramp(0.0, 0.0, 0.0), 0.0);
     let point = Point {
@@ -149,7 +153,11 @@ fn spots() {
         inner: deg(10.0),
         outer: deg(20.0),
     };
-    near(spot_illuminance(&spot(DVec3::new(0.0, -6.0, -8.0)), DVec3::ZERO, DVec3::Z), 3.2, 1e-14);
+    near(
+        spot_illuminance(&spot(DVec3::new(0.0, -6.0, -8.0)), DVec3::ZERO, DVec3::Z),
+        3.2,
+        1e-14,
+    );
     assert_eq!(spot_illuminance(&spot(DVec3::NEG_Z), DVec3::ZERO, DVec3::Z), 0.0);
     assert_eq!(spot_illuminance(&spot(DVec3::ZERO), DVec3::ZERO, DVec3::Z), 0.0);
 }
@@ -168,7 +176,11 @@ fn discs() {
             .flat_map(|&(r, wr)| nodes(0.0, 2.0 * PI, 40).into_iter().map(move |(phi, wp)| (r, phi, wr * wp)))
             .map(|(r, phi, w)| w * r * ggx(slope * slope + r * r + 2.0 * slope * r * phi.cos()))
             .sum();
-        near(disc_over_ggx(alpha, slope, radius, radius), sum / (PI * radius * radius) / ggx(slope * slope), 1e-7);
+        near(
+            disc_over_ggx(alpha, slope, radius, radius),
+            sum / (PI * radius * radius) / ggx(slope * slope),
+            1e-7,
+        );
     }
     assert!(disc_over_ggx(0.5, 3.0, 1e-5, 1e-5) - 1.0 < 1e-4);
 }

@@ -24,7 +24,9 @@ pub(super) fn read(text: &Text) -> Result<Photometry, PhotometryError> {
     // -1 says that the intensities are absolute.
     lumens.within("the lumens of a lamp", -1.0, 1e12)?;
     let multiplier = numbers.next("the multiplier")?.within("the multiplier", 0.0, 1e12)?;
-    let vertical = numbers.next("the number of vertical angles")?.count("the number of vertical angles", 2, MAX_ANGLES)?;
+    let vertical = numbers
+        .next("the number of vertical angles")?
+        .count("the number of vertical angles", 2, MAX_ANGLES)?;
     let count = numbers.next("the number of horizontal angles")?;
     let horizontal = count.count("the number of horizontal angles", 1, MAX_ANGLES)?;
     if vertical * horizontal > MAX_INTENSITIES {
@@ -49,7 +51,11 @@ pub(super) fn read(text: &Text) -> Result<Photometry, PhotometryError> {
     let second = numbers.next("the ballast-lamp photometric factor")?;
     numbers.next("the input watts")?;
     // Since 1995 this number is reserved, and since 2019 it says how the file was made.
-    let second = if early { second.within("the ballast-lamp photometric factor", 0.0, 1e6)? } else { 1.0 };
+    let second = if early {
+        second.within("the ballast-lamp photometric factor", 0.0, 1e6)?
+    } else {
+        1.0
+    };
     let factor = multiplier * ballast * second;
 
     let vertical = numbers.list(vertical, "vertical angle")?;
@@ -105,7 +111,12 @@ fn type_c(polar: &[f64], horizontal: &[super::text::Number], rows: Vec<Vec<f64>>
 }
 
 /// Angles around the direction of the beam. Horizontal ones from 0 on are for both sides.
-fn type_a_or_b(pole: Pole, vertical: Vec<f64>, horizontal: &[super::text::Number], mut rows: Vec<Vec<f64>>) -> Result<Grid, PhotometryError> {
+fn type_a_or_b(
+    pole: Pole,
+    vertical: Vec<f64>,
+    horizontal: &[super::text::Number],
+    mut rows: Vec<Vec<f64>>,
+) -> Result<Grid, PhotometryError> {
     let mut angles = increasing(horizontal, "a horizontal angle", -90.0, 90.0)?;
     if angles[0] == 0.0 {
         for index in 1..rows.len() {

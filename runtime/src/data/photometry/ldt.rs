@@ -19,18 +19,47 @@ pub(super) fn read(text: &Text) -> Result<Photometry, PhotometryError> {
     let symmetry = text.number(SYMMETRY, "the symmetry")?.count("the symmetry", 0, 4)?;
     let planes = text.number(PLANES, "the number of C planes")?;
     let count = planes.count("the number of C planes", 1, MAX_ANGLES)?;
-    let angles = text.number(ANGLES, "the number of intensities")?.count("the number of intensities", 2, MAX_ANGLES)?;
+    let angles = text
+        .number(ANGLES, "the number of intensities")?
+        .count("the number of intensities", 2, MAX_ANGLES)?;
     if count * angles > MAX_INTENSITIES {
         return Err(planes.wrong(format!("{count} planes of {angles} intensities are more than {MAX_INTENSITIES}")));
     }
-    let conversion = text.number(CONVERSION, "the conversion factor")?.within("the conversion factor", 0.0, 1e12)?;
-    let sets = text.number(LAMP_SETS, "the number of lamp sets")?.count("the number of lamp sets", 1, 20)?;
+    // Which of the planes have intensities: all; the first, for all; the half from 0 to 180; that from 270 over 0 to 90; the quadrant from 0 to 90.
+    let divided = |by: usize| {
+        if count.is_multiple_of(by) {
+            Ok(count / by)
+        } else {
+            Err(wrong(
+                PLANES,
+                format!("{count} C planes cannot have the symmetry {symmetry}: no multiple of {by}"),
+            ))
+        }
+    };
+    let given: Vec<usize> = match symmetry {
+        0 => (0..count).collect(),
+        1 => vec![0],
+        2 => (0..=divided(2)?).collect(),
+        3 => (3 * divided(4)?..=3 * divided(4)? + count / 2).collect(),
+        _ => (0..=divided(4)?).collect(),
+    };
+    let conversion = text
+        .number(CONVERSION, "the conversion factor")?
+        .within("the conversion factor", 0.0, 1e12)?;
+    let sets = text
+        .number(LAMP_SETS, "the number of lamp sets")?
+        .count("the number of lamp sets", 1, 20)?;
     // Further sets are alternatives to the first.
     let lamps = text.number(LAMP_SETS + 1, "the number of lamps")?;
     lamps.within("the number of lamps", -1e6, 1e6)?;
-    let flux = text.number(LAMP_SETS + 3, "the lamps' flux")?.within("the lamps' flux", 0.0, 1e12)?;
+    let flux = text
+        .number(LAMP_SETS + 3, "the lamps' flux")?
+        .within("the lamps' flux", 0.0, 1e12)?;
     let mut opening = [0.0; 3];
-    for (extent, (line, what)) in opening.iter_mut().zip(OPENING.into_iter().zip(["the length", "the width", "the height"])) {
+    for (extent, (line, what)) in opening
+        .iter_mut()
+        .zip(OPENING.into_iter().zip(["the length", "the width", "the height"]))
+    {
         // Millimetres; a width of 0 says that the opening is round.
         *extent = text.number(line, what)?.within(what, 0.0, 1e7)? / 1000.0;
     }
@@ -47,21 +76,6 @@ pub(super) fn read(text: &Text) -> Result<Photometry, PhotometryError> {
     let all = list(count, "angle of a C plane")?;
     let polar = increasing(&list(angles, "angle")?, "an angle", 0.0, 180.0)?;
     let azimuth = increasing(&all, "the angle of a C plane", 0.0, 360.0)?;
-    // Which of the planes have intensities: all; the first, for all; the half from 0 to 180; that from 270 over 0 to 90; the quadrant from 0 to 90.
-    let divided = |by: usize| {
-        if count.is_multiple_of(by) {
-            Ok(count / by)
-        } else {
-            Err(wrong(PLANES, format!("{count} C planes cannot have the symmetry {symmetry}: no multiple of {by}")))
-        }
-    };
-    let given: Vec<usize> = match symmetry {
-        0 => (0..count).collect(),
-        1 => vec![0],
-        2 => (0..=divided(2)?).collect(),
-        3 => (3 * divided(4)?..=3 * divided(4)? + count / 2).collect(),
-        _ => (0..=divided(4)?).collect(),
-    };
     let factor = conversion * flux / 1000.0;
     let mut rows = Vec::new();
     for index in given {

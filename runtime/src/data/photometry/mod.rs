@@ -69,7 +69,11 @@ impl Photometry {
 
     /// Luminous flux, lm: the integral over all directions of what is interpolated linearly in both angles, exactly.
     pub fn flux(&self) -> f64 {
-        let rows: Vec<f64> = self.candela.chunks(self.polar.len()).map(|row| over_polar(&self.polar, row)).collect();
+        let rows: Vec<f64> = self
+            .candela
+            .chunks(self.polar.len())
+            .map(|row| over_polar(&self.polar, row))
+            .collect();
         let pairs = self.azimuth.windows(2).zip(rows.windows(2));
         pairs.map(|(a, row)| (a[1] - a[0]) * (row[0] + row[1]) / 2.0).sum()
     }
@@ -89,12 +93,15 @@ impl Photometry {
     }
 }
 
-/// The integral of I(theta) sin(theta) of an intensity that is linear between the angles. By parts: of a piece from a to b with the
-/// slope k it is I(a) cos a - I(b) cos b + k (sin b - sin a).
+/// The integral of I(theta) sin(theta) of an intensity that is linear between the angles. Of a piece from a to b, by parts, it is
+/// I(a) (cos a - m) + I(b) (m - cos b) with the mean m of the cosine; rounding must not make a share negative.
 fn over_polar(angles: &[f64], intensities: &[f64]) -> f64 {
     let pieces = angles.windows(2).zip(intensities.windows(2));
     pieces
-        .map(|(t, i)| i[0] * t[0].cos() - i[1] * t[1].cos() + (i[1] - i[0]) / (t[1] - t[0]) * (t[1].sin() - t[0].sin()))
+        .map(|(t, i)| {
+            let mean = (t[1].sin() - t[0].sin()) / (t[1] - t[0]);
+            i[0] * (t[0].cos() - mean).max(0.0) + i[1] * (mean - t[1].cos()).max(0.0)
+        })
         .sum()
 }
 

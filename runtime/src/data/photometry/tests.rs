@@ -75,7 +75,11 @@ fn flux_of_a_cosine() {
     // Before 1995 the second factor counts.
     near(read(&scaled.replace("IESNA:LM-63-2002", "IESNA91")).flux(), 3.0 * 3139.597_4, 1e-7);
     near(read(&scaled.replace("IESNA:LM-63-2002\n", "")).flux(), 3.0 * 3139.597_4, 1e-7);
-    near(read(&scaled.replace("IESNA:LM-63-2002", "IES:LM-63-2019")).flux(), 1.5 * 3139.597_4, 1e-7);
+    near(
+        read(&scaled.replace("IESNA:LM-63-2002", "IES:LM-63-2019")).flux(),
+        1.5 * 3139.597_4,
+        1e-7,
+    );
 }
 
 /// The standard library's own example, read from its file: the flux of the formula that it was made by, to 0.1 %.
@@ -157,9 +161,15 @@ fn beams_of_types_a_and_b() {
     // What is given from 0 on is on both sides, horizontally.
     let right = steps(0.0, 90.0, 10.0);
     let a = read(3, &right, &one((20.0, 30.0)));
-    assert_eq!((at(&a, 30.0, 110.0), at(&a, -30.0, 110.0), a.candela.iter().sum::<f64>()), (7.0, 7.0, 14.0));
+    assert_eq!(
+        (at(&a, 30.0, 110.0), at(&a, -30.0, 110.0), a.candela.iter().sum::<f64>()),
+        (7.0, 7.0, 14.0)
+    );
     let b = read(2, &right, &one((20.0, 30.0)));
-    assert_eq!((at(&b, 20.0, 120.0), at(&b, 20.0, 60.0), b.candela.iter().sum::<f64>()), (7.0, 7.0, 14.0));
+    assert_eq!(
+        (at(&b, 20.0, 120.0), at(&b, 20.0, 60.0), b.candela.iter().sum::<f64>()),
+        (7.0, 7.0, 14.0)
+    );
     for kind in [2, 3] {
         near(read(kind, &right, &|_, _| 1.0).flux(), 2.0 * PI, 1e-12);
     }
@@ -168,7 +178,13 @@ fn beams_of_types_a_and_b() {
 /// Catches a seam where the file gives a plane twice, and poles where the planes do not meet.
 #[test]
 fn seams_and_poles_are_one() {
-    let file = ies("IESNA:LM-63-2002", 1, &[0.0, 90.0, 180.0], &[0.0, 90.0, 180.0, 270.0, 360.0], |v, h| v + h + 1.0);
+    let file = ies(
+        "IESNA:LM-63-2002",
+        1,
+        &[0.0, 90.0, 180.0],
+        &[0.0, 90.0, 180.0, 270.0, 360.0],
+        |v, h| v + h + 1.0,
+    );
     let read = Photometry::read(file.as_bytes()).unwrap();
     assert_eq!(at(&read, 0.0, 90.0), 271.0);
     assert_eq!(at(&read, 360.0, 90.0), 271.0);
@@ -188,17 +204,47 @@ fn errors_name_the_line() {
     };
     for (found, expected) in [
         (said("IESNA:LM-63-2002\n"), "line 1: the file ends before a line `TILT=NONE`"),
-        (changed("TILT=NONE", "TILT=INCLUDE"), "line 3: `TILT=INCLUDE`: only `TILT=NONE` is taken"),
-        (changed("TILT=NONE", "TILT=lamp.tlt"), "line 3: `TILT=lamp.tlt`: only `TILT=NONE` is taken"),
+        (
+            changed("TILT=NONE", "TILT=INCLUDE"),
+            "line 3: `TILT=INCLUDE`: only `TILT=NONE` is taken",
+        ),
+        (
+            changed("TILT=NONE", "TILT=lamp.tlt"),
+            "line 3: `TILT=lamp.tlt`: only `TILT=NONE` is taken",
+        ),
         (changed("2 500", "0 500"), "line 4: the number of lamps is 0, not from 1 to 1000000"),
-        (changed("2 500", "2 lots"), "line 4: the lumens of a lamp should be a number, not `lots`"),
-        (changed("2 500", "2 -3"), "line 4: the lumens of a lamp is -3, not from -1 to 1000000000000"),
-        (changed(" 3 2 1 2 ", " 3.5 2 1 2 "), "line 4: the number of vertical angles is 3.5, no whole number"),
-        (changed(" 3 2 1 2 ", " 1 2 1 2 "), "line 4: the number of vertical angles is 1, not from 2 to 4096"),
-        (changed(" 3 2 1 2 ", " 4096 4096 1 2 "), "line 4: 4096 times 4096 angles are more than 1048576"),
-        (changed(" 3 2 1 2 ", " 3 2 4 2 "), "line 4: the photometric type is 4, not from 1 to 3"),
-        (changed(" 3 2 1 2 ", " 3 2 1 0 "), "line 4: the unit of lengths is 0, not from 1 to 2"),
-        (changed("0 45 90", "0 45 30"), "line 6: a vertical angle is 30, but the one before is 45"),
+        (
+            changed("2 500", "2 lots"),
+            "line 4: the lumens of a lamp should be a number, not `lots`",
+        ),
+        (
+            changed("2 500", "2 -3"),
+            "line 4: the lumens of a lamp is -3, not from -1 to 1000000000000",
+        ),
+        (
+            changed(" 3 2 1 2 ", " 3.5 2 1 2 "),
+            "line 4: the number of vertical angles is 3.5, no whole number",
+        ),
+        (
+            changed(" 3 2 1 2 ", " 1 2 1 2 "),
+            "line 4: the number of vertical angles is 1, not from 2 to 4096",
+        ),
+        (
+            changed(" 3 2 1 2 ", " 4096 4096 1 2 "),
+            "line 4: 4096 times 4096 angles are more than 1048576",
+        ),
+        (
+            changed(" 3 2 1 2 ", " 3 2 4 2 "),
+            "line 4: the photometric type is 4, not from 1 to 3",
+        ),
+        (
+            changed(" 3 2 1 2 ", " 3 2 1 0 "),
+            "line 4: the unit of lengths is 0, not from 1 to 2",
+        ),
+        (
+            changed("0 45 90", "0 45 30"),
+            "line 6: a vertical angle is 30, but the one before is 45",
+        ),
         (changed("0 45 90", "0 45 190"), "line 6: a vertical angle is 190, not from 0 to 180"),
         (
             changed("\n0 90\n", "\n0 80\n"),
@@ -206,7 +252,10 @@ fn errors_name_the_line() {
         ),
         (changed("707 0\n", "-707 0\n"), "line 8: an intensity of -707 cd"),
         (changed("707 0\n", "1e99 0\n"), "line 8: an intensity of 1e99 cd"),
-        (changed("707 0\n", "nan 0\n"), "line 8: in the plane of 0 degrees, intensity 2 of 3 should be a number, not `nan`"),
+        (
+            changed("707 0\n", "nan 0\n"),
+            "line 8: in the plane of 0 degrees, intensity 2 of 3 should be a number, not `nan`",
+        ),
         (
             said(good.trim_end().trim_end_matches(" 0")),
             "line 9: the file ends before in the plane of 90 degrees, intensity 3 of 3",
@@ -216,9 +265,15 @@ fn errors_name_the_line() {
         let found = found.replace(&format!("{}", 1e99), "1e99");
         assert_eq!(found, expected);
     }
-    let good = ldt(4, &[0.0, 90.0, 180.0, 270.0], &[0.0, 45.0, 90.0], &[0.0, 90.0], |v, _| cosine(v).round());
+    let good = ldt(4, &[0.0, 90.0, 180.0, 270.0], &[0.0, 45.0, 90.0], &[0.0, 90.0], |v, _| {
+        cosine(v).round()
+    });
     let line = |number: usize, to: &str| {
-        let lines: Vec<&str> = good.lines().enumerate().map(|(i, line)| if i + 1 == number { to } else { line }).collect();
+        let lines: Vec<&str> = good
+            .lines()
+            .enumerate()
+            .map(|(i, line)| if i + 1 == number { to } else { line })
+            .collect();
         said(&lines.join("\n"))
     };
     for (found, expected) in [
@@ -230,14 +285,16 @@ fn errors_name_the_line() {
         (line(26, "0"), "line 26: the number of lamp sets is 0, not from 1 to 20"),
         (line(29, ""), "line 29: the lamps' flux should be a number, not ``"),
         (line(44, "0"), "line 44: the angle of a C plane is 0, but the one before is 0"),
-        (line(49, "99"), "line 49: an angle is 90, but the one before is 99"),
-        (line(51, "x"), "line 51: in the C plane of 0 degrees, intensity 2 of 3 should be a number, not `x`"),
+        (line(48, "99"), "line 49: an angle is 90, but the one before is 99"),
+        (
+            line(51, "x"),
+            "line 51: in the C plane of 0 degrees, intensity 2 of 3 should be a number, not `x`",
+        ),
         (
             said(good.trim_end().trim_end_matches('0').trim_end()),
             "line 54: the file ends before in the C plane of 90 degrees, intensity 3 of 3",
         ),
     ] {
-        let found = if expected.contains("no multiple") { found.replace("6 C planes", "6 C planes") } else { found };
         assert_eq!(found, expected);
     }
 }

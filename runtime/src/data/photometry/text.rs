@@ -69,7 +69,11 @@ impl Text {
 
     /// Whether a line begins with `TILT=`, which every IES file has and no EULUMDAT file.
     pub fn is_ies(&self) -> bool {
-        self.lines.iter().any(|line| is_tilt(line)) || self.lines.first().is_some_and(|line| line.starts_with("IESNA") || line.starts_with("IES:"))
+        self.lines.iter().any(|line| is_tilt(line))
+            || self
+                .lines
+                .first()
+                .is_some_and(|line| line.starts_with("IESNA") || line.starts_with("IES:"))
     }
 
     /// Line with this number, counted from 1, without spaces around it.
@@ -91,16 +95,11 @@ impl Text {
 
     /// All numbers after a line, separated by white space or commas.
     pub fn numbers_after(&self, line: usize) -> Numbers<'_> {
-        let words = self
-            .lines
-            .iter()
-            .enumerate()
-            .skip(line)
-            .flat_map(|(at, line)| {
-                line.split(|c: char| c.is_whitespace() || c == ',')
-                    .filter(|word| !word.is_empty())
-                    .map(move |word| (at + 1, word))
-            });
+        let words = self.lines.iter().enumerate().skip(line).flat_map(|(at, line)| {
+            line.split(|c: char| c.is_whitespace() || c == ',')
+                .filter(|word| !word.is_empty())
+                .map(move |word| (at + 1, word))
+        });
         Numbers {
             words: Box::new(words),
             end: self.end(),
