@@ -145,6 +145,21 @@ fn symmetric_files_say_the_same() {
     assert_eq!(file(&[0.0], &|v, _| cosine(v)).opening, [0.1, 0.2, 0.3]);
 }
 
+/// Catches line ends of one system only: all three say the same.
+#[test]
+fn line_ends_of_all_systems() {
+    let turn = steps(0.0, 270.0, 90.0);
+    let data = ldt(0, &turn, &[0.0, 90.0], &turn, |v, h| v + h);
+    let read = |text: &str| Photometry::read(text.as_bytes()).unwrap();
+    for end in ["\n", "\r"] {
+        assert_eq!(read(&data.replace("\r\n", end)), read(&data));
+    }
+    let file = ies("IESNA:LM-63-2002", 1, &[0.0, 90.0], &[0.0], |v, _| v);
+    for end in ["\r\n", "\r"] {
+        assert_eq!(read(&file.replace('\n', end)), read(&file));
+    }
+}
+
 /// Catches types A and B mistaken for each other, or for C: a beam of 10 degrees beside the axis, and the flux of light that is equal everywhere.
 #[test]
 fn beams_of_types_a_and_b() {
