@@ -118,8 +118,14 @@ pub fn disc_cosine(n: DVec3, toward: DVec3, radius: f64) -> f64 {
 ///
 /// GGX has the integrand of the configuration factor from an element at the height alpha to a parallel disc (Siegel and Howell 2002, appendix C).
 pub fn disc_over_ggx(alpha: f64, slope: f64, reach: f64, size: f64) -> f64 {
-    let z = alpha.powi(2) + slope.powi(2) + reach.powi(2);
-    let factor = (1.0 - (z - 2.0 * reach.powi(2)) / (z * z - 4.0 * (slope * reach).powi(2)).sqrt()) / 2.0;
+    let excess = alpha.powi(2) + slope.powi(2) - reach.powi(2);
+    let root = excess.hypot(2.0 * alpha * reach);
+    // (1 - excess / root) / 2; far from the peak that difference is below what f64 resolves.
+    let factor = if excess > 0.0 {
+        2.0 * (alpha * reach).powi(2) / (root * (root + excess))
+    } else {
+        (root - excess) / (2.0 * root)
+    };
     let area = reach.powi(2) + factor * (size.powi(2) - reach.powi(2));
     factor * (alpha.powi(2) + slope.powi(2)).powi(2) / (alpha.powi(2) * area)
 }
