@@ -43,25 +43,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 const FNV_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
 const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
 
-/// Rust that declares the `truth.rs` of every folder as a module, the table of them all, sorted by folder, and a digest of their
-/// texts and of what they are written with.
+/// Rust that declares the `truth.rs` and `table.rs` of every folder as modules, the tables of them all, sorted by folder, and a digest of the
+/// truths' texts and of what they are written with.
 fn truths(root: &Path) -> Result<String, Box<dyn Error>> {
     let mut folders = Vec::new();
     for category in folders_with(root, "category.ron")? {
         folders.extend(folders_with(&category, "module.ron")?);
         folders.push(category);
     }
-    folders.retain(|folder| folder.join("truth.rs").is_file());
-    let mut named = Vec::new();
-    for folder in folders {
-        let parts: Vec<_> = folder
-            .strip_prefix(root)?
-            .components()
-            .map(|c| c.as_os_str().to_string_lossy().into_owned())
-            .collect();
-        named.push((parts.join("/"), folder.join("truth.rs")));
-    }
-    named.sort();
+    let named = with_file(root, &folders, "truth.rs")?;
     let mut digest = FNV_BASIS;
     let mut sources: Vec<PathBuf> = fs::read_dir(root.join("src/oracles"))?
         .flatten()
@@ -78,7 +68,27 @@ fn truths(root: &Path) -> Result<String, Box<dyn Error>> {
         writeln!(text, "#[path = {:?}]\nmod of_{index};", path.display().to_string())?;
         writeln!(table, "    ({name:?}, of_{index}::TRUTHS),")?;
     }
+    table.push_str("];\npub(super) static TABLES: &[(&str, &[(&str, super::Table)])] = &[\n");
+    for (index, (name, path)) in with_file(root, &folders, "table.rs")?.iter().enumerate() {
+        writeln!(text, "#[path = {:?}]\nmod table_{index};", path.display().to_string())?;
+        writeln!(table, "    ({name:?}, table_{index}::TABLES),")?;
+    }
     Ok(format!("{text}{table}];\npub(super) const DIGEST: u64 = {digest:#018x};\n"))
+}
+
+/// Folders that hold a file, by their names relative to `root` with `/`, and the file's path; sorted.
+fn with_file(root: &Path, folders: &[PathBuf], file: &str) -> Result<Vec<(String, PathBuf)>, Box<dyn Error>> {
+    let mut named = Vec::new();
+    for folder in folders.iter().filter(|folder| folder.join(file).is_file()) {
+        let parts: Vec<_> = folder
+            .strip_prefix(root)?
+            .components()
+            .map(|c| c.as_os_str().to_string_lossy().into_owned())
+            .collect();
+        named.push((parts.join("/"), folder.join(file)));
+    }
+    named.sort();
+    Ok(named)
 }
 
 /// Folders directly in `folder` that hold the file `marker`.

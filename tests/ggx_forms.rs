@@ -91,7 +91,8 @@ fn largest(catalog: &Catalog, module: &str, roughness: f64, on: On) -> [f64; 2] 
 }
 
 /// Catches a shipped distribution that is no better than the printed ones, and a harness that sees other errors than are published: each
-/// published figure is within a factor of two of what is found here, from the median surface to the worst.
+/// published figure is within a factor of two of what is found here, from the median surface to the worst. The library's own, by a cross product of a
+/// difference, may be better.
 ///
 /// A driver may make one form of another: lavapipe's compiler turns the cosine's denominator into the sine's, and then has its error. The
 /// evaluator computes what is written.
@@ -110,7 +111,7 @@ fn the_errors_of_the_three_forms_are_as_published() {
             for (at, [median, worst]) in found.into_iter().enumerate() {
                 let rewritten = matches!(on, On::Device) && at == 0 && found[0] == found[1];
                 let published = published[if rewritten { 1 } else { at }];
-                if median > 2.0 * published || 2.0 * worst < published {
+                if median > 2.0 * published || at < 2 && 2.0 * worst < published {
                     wrong.push(format!(
                         "{name}, roughness {roughness}: {median:e} to {worst:e}, published {published:e}"
                     ));

@@ -226,6 +226,8 @@ const HOMONYMS: &[(&str, &str, &str)] = &[
     ("runtime/src", "display", "the scene's field, and the frame's image"),
     ("runtime/src", "forward", "a member of the interface's struct for views"),
     ("runtime/src", "perspective", "a member of the same"),
+    ("runtime/src", "merl", "a format of files"),
+    ("runtime/src", "rgl", "a format of files"),
     ("runtime/report/src", "hard", "a field of experiments"),
     ("runtime/report/src", "light", "a colour of the page's theme"),
 ];
@@ -371,5 +373,43 @@ fn no_file_is_a_heap() {
             }
         }
     }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Catches a module that turns roughness, glossiness, alpha or an exponent into one another by itself: there would be two rules for one word.
+#[test]
+fn roughness_is_converted_in_one_place() {
+    let place = root().join("modules/conversion/interface.wgsl");
+    let forms = [
+        "roughness * roughness",
+        "roughness * params.",
+        "sqrt(s.alpha)",
+        "sqrt(alpha)",
+        "sqrt(roughness)",
+        "1.0 - glossiness",
+        "1.0 - params.glossiness",
+        "MIN_ALPHA",
+        "(1.0 + alpha) / (alpha * alpha)",
+        "(1.0 + a) / (a * a)",
+    ];
+    let conversions = |line: &str| forms.iter().any(|form| line.contains(form));
+    let mut wrong = Vec::new();
+    let mut seen = 0;
+    for path in files(&root().join("modules"), ".wgsl").into_iter().filter(|path| *path != place) {
+        let is_material = path.starts_with(root().join("modules/material"));
+        for (index, line) in read(&path).lines().enumerate() {
+            let line = line.split("//").next().unwrap_or_default();
+            // A material gives widths by a function of that place, or one that has been given already.
+            let width = is_material && ["alpha = ", "widths = "].iter().any(|text| line.contains(text));
+            let given = ["alpha_of_", "widths_of_", "vec2f(s.alpha)", "= 1.0", "= vec2f(1.0)"]
+                .iter()
+                .any(|text| line.contains(text));
+            seen += usize::from(width && given);
+            if conversions(line) || (width && !given) {
+                wrong.push(format!("{}:{}: {}", path.display(), index + 1, line.trim()));
+            }
+        }
+    }
+    assert!(seen >= 6, "{seen}");
     assert!(wrong.is_empty(), "{wrong:#?}");
 }

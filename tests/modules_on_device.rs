@@ -412,3 +412,28 @@ fn metalness() {
         }
     }
 }
+
+/// Catches a layer that gives light: over a white matte surface fuzz gives back all that it gets, and a coat no more than that; and one that
+/// takes too much, below 80 degrees.
+#[test]
+fn layers_over_a_white_surface_keep_the_energy() {
+    let sky = hemisphere(16, 16);
+    let albedo = |layer: &str, s: Json, degrees: f64| -> f64 {
+        let v = deg(degrees, 0.0);
+        let row = |(l, _): &(DVec3, f64)| json!({"s": s, "v": list(v), "l": list(single3(*l))});
+        let recipe = format!("(module: \"brdf/{layer}\", fill: {{\"base\": \"lambert\"}})");
+        let results = probe(&recipe, "brdf", Json::Array(sky.iter().map(row).collect()));
+        let of = |(value, (l, weight)): (&Json, &(DVec3, f64))| components(value, layer)[0] * l.z * weight;
+        results.as_array().unwrap().iter().zip(&sky).map(of).sum()
+    };
+    for degrees in [0.0, 30.0, 60.0, 75.0] {
+        for roughness in [0.2, 0.5, 1.0] {
+            let got = albedo("fuzz", json!({"diffuse": [1, 1, 1], "fuzz_roughness": roughness}), degrees);
+            assert!((got - 1.0).abs() < 2e-3, "fuzz {roughness} {degrees}: {got}");
+        }
+        for alpha in [0.2, 0.5, 1.0] {
+            let got = albedo("coat", json!({"diffuse": [1, 1, 1], "coat_alpha": alpha}), degrees);
+            assert!(got < 1.001 && got > 0.7, "coat {alpha} {degrees}: {got}");
+        }
+    }
+}

@@ -73,7 +73,9 @@ impl Subject<'_> {
     /// the module draws, or by the cosine.
     fn albedo(&self, f0: f64, alpha: f64, degrees: f64) -> (f64, f64) {
         let eye = direction(degrees.to_radians(), 0.3);
-        let s = json!({"alpha": alpha, "widths": [alpha, alpha], "f0": [f0, f0, f0], "diffuse": [1.0 - f0, 1.0 - f0, 1.0 - f0]});
+        let s = json!({
+            "alpha": alpha, "widths": [alpha, alpha], "f0": [f0, f0, f0], "diffuse": [1.0 - f0, 1.0 - f0, 1.0 - f0], "diffuse_roughness": alpha.sqrt(),
+        });
         // A diffuse part has no sampler.
         let is_whole = self.function == "brdf";
         let numbers = |step: usize| [fraction(step, 0.754_877_666), fraction(step, 0.569_840_291)];
@@ -157,7 +159,10 @@ impl Subject<'_> {
 }
 
 fn surface(alpha: f64) -> Json {
-    json!({"alpha": alpha, "widths": [alpha, alpha], "f0": [0.04, 0.5, 1.0], "diffuse": [1.0, 0.5, 0.0]})
+    json!({
+        "alpha": alpha, "widths": [alpha, alpha], "f0": [0.04, 0.5, 1.0], "diffuse": [1.0, 0.5, 0.0], "diffuse_roughness": alpha.sqrt(),
+        "coat_alpha": alpha, "coat_color": [0.9, 0.5, 0.1], "fuzz_roughness": alpha.sqrt(),
+    })
 }
 
 /// Catches a claim that does not hold, a BRDF that is negative or not finite.

@@ -167,7 +167,7 @@ fn chi_square(statistic: f64, degrees: f64) -> f64 {
 }
 
 fn surface(alpha: f64) -> Json {
-    json!({"alpha": alpha, "widths": [alpha, alpha * 0.5], "f0": [0.3, 0.5, 0.9], "diffuse": [0.2, 0.3, 0.1]})
+    json!({"alpha": alpha, "widths": [alpha, alpha * 0.5], "f0": [0.3, 0.5, 0.9], "diffuse": [0.2, 0.3, 0.1], "coat_alpha": alpha, "fuzz_roughness": alpha})
 }
 
 fn eyes() -> [[f64; 3]; 3] {

@@ -58,8 +58,16 @@ fn the_library_holds_exactly_what_is_legal() {
     let number = files.len();
     files.push(file("shadows.space.ron"));
     // The whole library has more reflectance than can be multiplied out: with one module of each kind it can, shadows and maps and rules as they are.
-    let kinds = ["brdf", "ndf", "masking", "fresnel", "diffuse"];
-    let kept = ["lambert", "microfacet", "ggx", "smith-ggx-correlated", "schlick", "lambertian"];
+    let kinds = ["material", "brdf", "ndf", "masking", "fresnel", "diffuse"];
+    let kept = [
+        "metalness",
+        "lambert",
+        "microfacet",
+        "ggx",
+        "smith-ggx-correlated",
+        "schlick",
+        "lambertian",
+    ];
     let others = CATALOG.modules().filter(|m| {
         m.category == "pass" && m.name != "forward" || kinds.contains(&m.category.as_str()) && !kept.contains(&m.name.as_str())
     });
@@ -125,7 +133,13 @@ fn the_cover_has_every_legal_pair() {
     let (legal, covered) = (pairs(&all), pairs(&cover));
     println!("{} permutations cover the {} pairs of {}", cover.len(), legal.len(), all.len());
     assert!(legal.is_subset(&covered), "{:?}", legal.difference(&covered).next());
-    assert!(legal.len() > 500 && cover.len() < 200, "{} {}", legal.len(), cover.len());
+    // Layers of reflectance stand in each other: the pairs of what lies in one place and in another are many.
+    assert!(
+        legal.len() > 500 && cover.len() * 10 < legal.len(),
+        "{} {}",
+        legal.len(),
+        cover.len()
+    );
 }
 
 /// Catches a legal recipe that does not compile. Of a library with many, a sample.

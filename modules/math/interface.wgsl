@@ -33,3 +33,23 @@ fn cosine_sample(n: vec3f, u: vec2f) -> vec3f {
 fn cosine_pdf(n: vec3f, l: vec3f) -> f32 {
     return max(dot(n, l), 0.0) * INV_PI;
 }
+
+/// The angle from the x axis to a point with y not below 0, in [0, pi], rad; 0 at the origin. A polynomial of ours: relative error 2e-7, where
+/// WGSL promises 4096 units in the last place of its own.
+fn polar_angle(y: f32, x: f32) -> f32 {
+    let most = max(y, abs(x));
+    // The floor keeps 0 / 0 from the origin alone: squares of anything smaller are 0 in f32.
+    let t = min(y, abs(x)) / max(most, 1e-30);
+    let t2 = t * t;
+    var p = 0.0028498882;
+    p = p * t2 - 0.0160686234;
+    p = p * t2 + 0.0426915103;
+    p = p * t2 - 0.0750429378;
+    p = p * t2 + 0.1064093367;
+    p = p * t2 - 0.1420364438;
+    p = p * t2 + 0.1999261938;
+    p = p * t2 - 0.3333307334;
+    p = (p * t2 + 0.9999999848) * t;
+    let acute = select(p, 0.5 * PI - p, y > abs(x));
+    return select(acute, PI - acute, x < 0.0);
+}

@@ -11,6 +11,7 @@
 //!   modules declare.
 //! - [`scene`]: scene files and glTF, and the recipes derived from them.
 //! - [`mesh`], [`image`], [`data`]: triangles, pictures and tables of numbers.
+//! - [`measured`]: tables of reflectance from files.
 //!
 //! Colours are linear Rec.709 in cd/m2 per channel, lengths in metres, right-handed with y up. The runtime knows no module by
 //! name, owns no window and prints nothing.
@@ -21,6 +22,7 @@ pub mod data;
 pub mod frame;
 pub mod gpu;
 pub mod image;
+pub mod measured;
 pub mod mesh;
 pub mod probe;
 pub mod scene;

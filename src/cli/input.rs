@@ -8,7 +8,7 @@ use shadewright::compiler::Recipe;
 
 use super::failure::Failure;
 
-/// Largest text that the command reads, in bytes; the compiler's own limits are below it. Keeps an endless pipe from filling the memory.
+/// Largest file that the command reads, in bytes; the compiler's own limits of texts are below it. Keeps an endless pipe from filling the memory.
 const MAX_BYTES: u64 = 64 << 20;
 
 /// Text of a file, or of standard input for `-`.
@@ -16,6 +16,17 @@ const MAX_BYTES: u64 = 64 << 20;
 /// # Errors
 /// It is not there, is too long, or is no UTF-8.
 pub fn text(path: &Path) -> Result<String, Failure> {
+    String::from_utf8(bytes(path)?).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Failure::message(format!("{}: is no UTF-8 text (byte {at})", path.display()))
+    })
+}
+
+/// Bytes of a file, or of standard input for `-`.
+///
+/// # Errors
+/// It is not there, or is too long.
+pub fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     let name = path.display();
     let wrong = |error: std::io::Error| Failure::message(format!("{name}: cannot be read: {error}"));
     let mut bytes = Vec::new();
@@ -31,10 +42,7 @@ pub fn text(path: &Path) -> Result<String, Failure> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(Failure::message(format!("{name}: longer than {} MiB", MAX_BYTES >> 20)));
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        Failure::message(format!("{name}: is no UTF-8 text (byte {at})"))
-    })
+    Ok(bytes)
 }
 
 /// A recipe as typed: `-`, an inline RON tree, a file, or a module's name.

@@ -3,10 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use shadewright::report::{self, Baseline, Done, MeasureError, ReportError};
+use indexmap::IndexMap;
+use shadewright::compiler::Report;
+use shadewright::compiler::diagnostics::{Diagnostic, codes};
+use shadewright::report::{self, Baseline, Done, MeasureError, ReportError, fit};
 use shadewright::runtime::gpu::Gpu;
+use shadewright::runtime::measured::Measured;
 
 use super::failure::Failure;
+use super::input;
 use super::output::{Outputs, say, say_json};
 use super::watch::Watch;
 use super::{Context, Format};
@@ -25,8 +30,12 @@ Equal on every machine: errors of the evaluator, operations counted in the linke
 /// Options of `report`.
 #[derive(Args)]
 pub struct Options {
-    /// Categories to report on; all where none is named
+    /// Categories to report on; all where none is named. With --measured the models to fit, recipes; all modules where none is named
+    #[arg(value_name = "CATEGORY|MODEL")]
     categories: Vec<String>,
+    /// Fits models to a file of measured reflectance (MERL .binary, RGL .bsdf) instead
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["check", "accept"])]
+    measured: Option<PathBuf>,
     /// Folder for report.html, report.json, rows.csv, plots and pictures
     #[arg(short, value_name = "DIR", default_value = "report", conflicts_with_all = ["check", "accept"])]
     output: PathBuf,
@@ -50,6 +59,10 @@ pub struct Options {
 /// # Errors
 /// An experiment is wrong, an alternative cannot be measured, there is no GPU, or something is worse than the baseline.
 pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
+    if let Some(path) = &options.measured {
+        let report = fitted(context, path, options)?;
+        return write(context, report, options);
+    }
     let experiments = report::experiments(&*context.library, &context.catalog)?;
     let is_baseline = options.check.is_some() || options.accept.is_some();
     let gpu = if is_baseline || options.no_device {
@@ -74,10 +87,50 @@ pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
         },
     );
     watch.finish();
-    let mut report = made.map_err(|error| failure(error, options))?;
+    let report = made.map_err(|error| failure(error, options))?;
     if let Some(path) = &options.check {
         return check(context, path, &Baseline::of(&report));
     }
+    write(context, report, options)
+}
+
+/// The best fits to a measured table.
+fn fitted(context: &Context, path: &Path, options: &Options) -> Result<report::Report, Failure> {
+    let name = path.display().to_string();
+    let bytes = input::bytes(path)?;
+    let table = Measured::read(&bytes)
+        .map_err(|error| Diagnostic::new(codes::MEASURED_DAMAGED, format!("{name}: {error}")))
+        .map_err(Report::from)?;
+    let subjects = fit::subjects(&*context.library, &context.catalog)?;
+    let mut models = IndexMap::new();
+    for typed in &options.categories {
+        models.insert(typed.clone(), input::recipe(typed)?);
+    }
+    let watch = Watch::new(1, "models");
+    let mut report = report::Report::default();
+    report.provenance.version = env!("CARGO_PKG_VERSION").to_owned();
+    for subject in &subjects {
+        let made = fit::fit(
+            &context.catalog,
+            subject,
+            models.clone(),
+            (&name, &table),
+            &fit::FitOptions {
+                quick: options.quick,
+                cancel: watch.cancel(),
+                progress: &|done, of, next| watch.at(done, of, next),
+            },
+        );
+        report.fits.push(made.map_err(|error| match error {
+            MeasureError::Interrupted => Failure::Interrupted("nothing is written".to_owned()),
+            other => failure(other.into(), options),
+        })?);
+    }
+    watch.finish();
+    Ok(report)
+}
+
+fn write(context: &Context, mut report: report::Report, options: &Options) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
     if let Some(path) = &options.accept {
         outputs.stage(path, Baseline::of(&report).to_json().as_bytes())?;
@@ -131,8 +184,8 @@ fn check(context: &Context, path: &Path, now: &Baseline) -> Result<(), Failure> 
 
 /// A line for each row with a fault, and where the page is.
 fn summary(report: &report::Report, options: &Options) -> String {
-    let mut lines = Vec::new();
-    let mut rows = 0;
+    let mut lines: Vec<String> = report.fits.iter().flat_map(fit_lines).collect();
+    let mut rows: usize = report.fits.iter().map(|fits| fits.rows.len()).sum();
     for results in &report.experiments {
         for row in &results.rows {
             rows += 1;
@@ -164,6 +217,18 @@ fn summary(report: &report::Report, options: &Options) -> String {
         lines.push(format!("{rows} rows"));
     }
     lines.join("\n")
+}
+
+/// A line for each model, the best first, and why others have none.
+fn fit_lines(fits: &report::data::Fits) -> Vec<String> {
+    let row = |row: &report::data::Fit| {
+        let errors = &row.errors;
+        let figures = [errors.rms, errors.p95, errors.max].map(report::write::number);
+        let [rms, p95, max] = figures;
+        format!("{}: RMS {rms}, p95 {p95}, max {max}: {}", row.label, report::write::parameters(row))
+    };
+    let without = fits.without.iter().map(|(name, why)| format!("{name}: no fit: {why}"));
+    fits.rows.iter().map(row).chain(without).collect()
 }
 
 /// Finished rows in a folder.

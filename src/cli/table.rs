@@ -22,6 +22,9 @@ pub struct Options {
     /// A file of the resource's format, in place of the module's own
     #[arg(long, value_name = "FILE")]
     file: Option<PathBuf>,
+    /// Computes the module's own table anew
+    #[arg(long, conflicts_with = "file")]
+    make: bool,
     /// Where to, instead of standard output
     #[arg(short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -45,10 +48,18 @@ fn numbers(module: &Module, options: &Options) -> Result<Vec<f32>, Failure> {
         let message = format!("`{}` has no table `{}`", module.name, options.resource);
         let found =
             Diagnostic::new(codes::UNKNOWN_FILE, message).suggest(&options.resource, "tables", known.map(|(name, _)| name.as_str()));
-        return Err(found.into());
+        return Err(shadewright::compiler::Report::from(found).into());
     };
     let plain = format.as_deref().unwrap_or(PLAIN);
     let wrong = |file: &str, why: &dyn std::fmt::Display| Failure::message(format!("{file}: {why}"));
+    if options.make {
+        let folder = format!("{}/{}", module.category, module.name);
+        let Some(make) = shadewright::modules::oracles::table(&folder, &options.resource) else {
+            let message = format!("`{folder}` has no `table.rs` that computes `{}`", options.resource);
+            return Err(Failure::message(message));
+        };
+        return Ok(make());
+    }
     if let Some(file) = &options.file {
         if format.is_none() {
             let message = format!(

@@ -122,3 +122,33 @@ fn a_normal_map_turns_the_normal_in_the_frame_of_the_mesh() {
         all(&picture, LUX / PI * cosine.max(0.0) + 10.0);
     }
 }
+
+/// Catches a back face whose normal looks away from the viewer, and a normal map that is turned only in part there: the relief of the back is
+/// that of the front seen from behind, so the whole normal is reversed.
+#[test]
+fn the_back_of_a_double_sided_object_has_the_normal_of_the_front_reversed() {
+    let light = DVec3::new(-0.6, -1.0, 0.35);
+    let text = format!("({}, {}, {})", light.x, light.y, light.z);
+    for texel in [[128, 128, 255], [190, 128, 230], [128, 70, 230], [60, 180, 200]] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = scene(folder.path(), "normal_map", "normal-map", texel, &text);
+        let file = ["rotate", "double_sided"]
+            .into_iter()
+            .zip(["(180, 0, 0)", "true"])
+            .fold(file, |file, (field, value)| {
+                file.set(&format!("objects[0].{field}"), value).unwrap_or_else(|e| panic!("{e}"))
+            });
+        let frame = frame(&file);
+        let mesh = &frame.draws[0].mesh;
+        // Half a turn about x: the camera sees the back.
+        let turned = |v: DVec3| DVec3::new(v.x, -v.y, -v.z);
+        let (n, t) = (vector(mesh.normals[0]), DVec3::from_slice(&mesh.tangents[0].map(f64::from)));
+        let b = n.cross(t) * f64::from(mesh.tangents[0][3]);
+        let stored = DVec3::from_array(texel.map(|c| f64::from(c) / 255.0 * 2.0 - 1.0));
+        let front = turned(t * stored.x + b * stored.y + n * stored.z).normalize();
+        assert!(front.y < 0.0, "the camera is above");
+        let cosine = (-front).dot(-light.normalize());
+        assert!(cosine > 0.1, "{cosine}: the light would say nothing");
+        all(&hdr(&frame), LUX / PI * cosine + 10.0);
+    }
+}

@@ -123,6 +123,8 @@ codes! {
     BAD_INPUT_RANGE = "SW1102", "An input of an experiment whose range holds nothing, is not finite, or refers to an input that is not drawn before.";
     UNKNOWN_TRUTH = "SW1103", "An experiment asks for the closed form of a folder that has none for the function.";
     BASELINE_INVALID = "SW1104", "A baseline of errors and costs that cannot be read, or is of another form.";
+    FIT_INVALID = "SW1105", "A fit says something that cannot be, or a model that cannot be fitted was asked for.";
+    MEASURED_DAMAGED = "SW1106", "A file of measured reflectance that is damaged, or holds nothing to compare with.";
 }
 
 #[cfg(test)]

@@ -7,7 +7,8 @@ use naga::valid::Capabilities;
 
 use super::Step::{self, Index, Key};
 use super::{
-    CategoryManifest, ModuleManifest, Param, ParamMode, ParamType, Parsed, PassDecl, Resource, ResourceKind, Typed, ValueError, typed,
+    Arity, CategoryManifest, ModuleManifest, Param, ParamMode, ParamType, Parsed, PassDecl, Resource, ResourceKind, Typed, ValueError,
+    typed,
 };
 use crate::diagnostics::{Diagnostic, Report, codes};
 
@@ -149,8 +150,24 @@ fn param<T>(parsed: &Parsed<T>, [table, name]: [Step; 2], declared: &Param, foun
     }
 }
 
-fn mode<T>(parsed: &Parsed<T>, [table, name]: [Step; 2], declared: &Param, found: &mut Vec<Diagnostic>) {
+fn mode(parsed: &Parsed<ModuleManifest>, [table, name]: [Step; 2], declared: &Param, found: &mut Vec<Diagnostic>) {
     let Key(shown) = name else { return };
+    if let Some(slot) = declared.filled_slot() {
+        let known = parsed.value.slots.get(slot).is_some_and(|slot| slot.arity != Arity::Single);
+        if !known || declared.mode != ParamMode::Constant || declared.ty != ParamType::Bool {
+            found.push(
+                parsed
+                    .error_at(
+                        &[table, name, Key("role")],
+                        codes::BAD_MODE,
+                        format!("`{shown}` cannot say whether `{slot}` is filled"),
+                        "no such optional or list slot, or no constant `Bool`",
+                    )
+                    .note("declare it `type: Bool, default: false, mode: Constant`"),
+            );
+        }
+        return;
+    }
     let scalar = matches!(declared.ty, ParamType::F32 | ParamType::U32 | ParamType::I32 | ParamType::Bool);
     let (label, note) = match (declared.mode, declared.ty) {
         (ParamMode::Uniform, ParamType::Bool) => ("WGSL has no `bool` in uniform buffers", "add `mode: Override` or `mode: Constant`"),

@@ -96,6 +96,10 @@ pub enum Arity {
 }
 
 /// What fills a slot: one node, or a list of them.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "nearly all are one node: a box would only cost each an allocation"
+)]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Filling {
@@ -132,6 +136,14 @@ pub struct Param {
     /// What the host must know of the value beyond its number (`position`, `direction`, `range` of a light).
     #[serde(default)]
     pub role: Option<String>,
+}
+
+impl Param {
+    /// The slot of which the parameter, by its role `filled:SLOT`, says whether anything stands in it. Nobody sets such a parameter: a branch on it
+    /// leaves no trace of what an empty slot would have done.
+    pub fn filled_slot(&self) -> Option<&str> {
+        self.role.as_deref()?.strip_prefix("filled:")
+    }
 }
 
 /// Type of a parameter.

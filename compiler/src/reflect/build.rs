@@ -131,7 +131,9 @@ fn params(plan: &Plan, validated: &Validated, bindings: &[Binding]) -> Vec<Param
     let mut found = Vec::new();
     for (index, instance) in plan.instances.list.iter().enumerate() {
         let node = &plan.tree.nodes[instance.node];
-        for (name, declared) in &node.module.manifest.params {
+        // What says whether a slot is filled is nobody's to set.
+        let params = node.module.manifest.params.iter();
+        for (name, declared) in params.filter(|(_, declared)| declared.filled_slot().is_none()) {
             if let Some(place) = place(plan, module, bindings, index, name) {
                 found.push(ParamUse {
                     instance: instance.name.clone(),

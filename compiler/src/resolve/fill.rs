@@ -8,7 +8,7 @@ use super::{Place, Standing, Tree, TreeNode, rules};
 use crate::catalog::{Catalog, Module, Variants};
 use crate::diagnostics::{Diagnostic, Report, codes};
 use crate::limits;
-use crate::manifest::{Arity, Filling, Node, ParamMode, Slot, Typed, Value, typed};
+use crate::manifest::{Arity, Filling, ModuleManifest, Node, ParamMode, Slot, Typed, Value, typed};
 use crate::program::Recipe;
 
 /// Resolves a recipe.
@@ -259,7 +259,7 @@ fn list_or_none(names: &[String]) -> String {
 pub fn unknown_params<'a>(module: &Module, names: impl IntoIterator<Item = &'a String>, place: impl Fn() -> Place) -> Result<(), Report> {
     let manifest = &module.manifest;
     for name in names {
-        if !manifest.params.contains_key(name) {
+        if manifest.params.get(name).is_none_or(|param| param.filled_slot().is_some()) {
             let at = place().keys(&["freeze", name]);
             if manifest.instances.contains_key(name) {
                 return Err(
@@ -272,12 +272,28 @@ pub fn unknown_params<'a>(module: &Module, names: impl IntoIterator<Item = &'a S
             return Err(
                 Diagnostic::new(codes::UNKNOWN_PARAM, format!("`{}` has no parameter `{name}`", module.name))
                     .at(&at.file, at.key_span(), "no such parameter")
-                    .suggest(name, "parameters", manifest.params.keys().map(String::as_str))
+                    .suggest(name, "parameters", settable(manifest))
                     .into(),
             );
         }
     }
     Ok(())
+}
+
+/// Names of the parameters that a recipe may set.
+fn settable(manifest: &ModuleManifest) -> impl Iterator<Item = &str> {
+    let params = manifest.params.iter().filter(|(_, param)| param.filled_slot().is_none());
+    params.map(|(name, _)| name.as_str())
+}
+
+/// Whether anything stands in a slot of the node.
+fn is_filled(module: &Module, node: &Node, slot: &str) -> bool {
+    let default = || module.manifest.slots.get(slot)?.default.as_ref();
+    match node.fill.get(slot).or_else(default) {
+        Some(Filling::One(_)) => true,
+        Some(Filling::Many(nodes)) => !nodes.is_empty(),
+        None => false,
+    }
 }
 
 /// Parameters that are constants in this node.
@@ -286,6 +302,11 @@ fn constants(module: &Module, node: &Node, place: impl Fn() -> Place) -> Result<
     let manifest = &module.manifest;
     let mut constants = IndexMap::new();
     for (name, param) in &manifest.params {
+        if let Some(slot) = param.filled_slot() {
+            let filled = is_filled(module, node, slot);
+            constants.insert(name.clone(), (Value::Bool(filled), Typed::Bool(filled)));
+            continue;
+        }
         let frozen = node.freeze.get(name);
         let value = match frozen {
             Some(value) => value,

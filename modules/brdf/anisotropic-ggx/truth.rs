@@ -4,37 +4,27 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::oracles::reflection::{angle, schlick};
+use crate::oracles::lobes::{directions, ggx_d_of_widths, ggx_mirror_density, lit, lobe_share, mixed, schlick_rgb, width_toward};
+use crate::oracles::reflection::ggx_g2_of_widths;
 use crate::oracles::{At, Truth};
 
-pub(super) const TRUTHS: &[(&str, Truth)] = &[("brdf", brdf)];
+pub(super) const TRUTHS: &[(&str, Truth)] = &[("brdf", brdf), ("brdf_pdf", brdf_pdf)];
 
 /// Walter et al. 2007, eq. 20, with D, G2 and Lambda of Heitz 2014, eqs. 85, 99 and 72, at the width that the azimuth sees.
 fn brdf(at: &At) -> Vec<f64> {
-    let (normal, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
-    if normal.dot(v) <= 0.0 || normal.dot(l) <= 0.0 {
+    let Some(lit) = lit(at) else {
         return vec![0.0; 3];
-    }
-    let widths = at.vector("s.widths");
-    let h = v + l;
-    let theta = angle(normal, h);
-    let d = 1.0 / (PI * widths.x * widths.y * theta.cos().powi(4) * (1.0 + squared_slope(at, h)).powi(2));
-    let lambda = |d: DVec3| {
-        let tangent = at.vector("s.tangent");
-        let phi = d.dot(normal.cross(tangent)).atan2(d.dot(tangent));
-        let width = (phi.cos() * widths.x).hypot(phi.sin() * widths.y);
-        0.5 * ((1.0 + (width * angle(normal, d).tan()).powi(2)).sqrt() - 1.0)
     };
-    let g = 1.0 / (1.0 + lambda(v) + lambda(l));
-    let facets = d * g / (4.0 * angle(normal, v).cos() * angle(normal, l).cos());
-    let mirror = (angle(v, l) / 2.0).cos();
-    let f = at.vector("s.f0").to_array().map(|f0| schlick(f0, mirror));
-    (at.vector("s.diffuse") / PI + DVec3::from_array(f) * facets).to_array().to_vec()
+    let widths = at.vector("s.widths");
+    let width = |d: DVec3| width_toward(at, widths, d);
+    let g = ggx_g2_of_widths([width(lit.v), width(lit.l)], [lit.theta_v, lit.theta_l]);
+    let facets = ggx_d_of_widths(at, widths, lit.v + lit.l) * g / (4.0 * lit.theta_v.cos() * lit.theta_l.cos());
+    let f = schlick_rgb(at.vector("s.f0"), lit.mirror.cos());
+    (at.vector("s.diffuse") / PI + f * facets).to_array().to_vec()
 }
 
-/// tan^2(theta) (cos^2(phi) / ax^2 + sin^2(phi) / ay^2) of a half vector; phi is counted from the tangent.
-fn squared_slope(at: &At, h: DVec3) -> f64 {
-    let (normal, tangent, widths) = (at.vector("s.normal"), at.vector("s.tangent"), at.vector("s.widths"));
-    let phi = h.dot(normal.cross(tangent)).atan2(h.dot(tangent));
-    angle(normal, h).tan().powi(2) * ((phi.cos() / widths.x).powi(2) + (phi.sin() / widths.y).powi(2))
+/// Facets that v sees (Heitz 2014, eqs. 16 and 18), by their reflectance toward v.
+fn brdf_pdf(at: &At) -> Vec<f64> {
+    let share = lobe_share(at, schlick_rgb(at.vector("s.f0"), directions(at).theta_v.cos()));
+    mixed(at, share, ggx_mirror_density(at, at.vector("s.widths")))
 }

@@ -9,7 +9,7 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     let h = v + l;
     let facets = beckmann(s, h) * cavities(n_dot_v, n_dot_l, h);
     // v.h = |v + l| / 2
-    return reflected(s.f0, min(0.5 * length(h), 1.0)) * facets + s.diffuse * INV_PI;
+    return dielectric_reflectance(s.f0, 0.5 * length(h)) * facets + s.diffuse * INV_PI;
 }
 
 /// e^-(tan / alpha)^2 / (pi alpha^2 cos^4) of the angle between n and a half vector of any length, of either sign.
@@ -37,46 +37,12 @@ fn cavities(n_dot_v: f32, n_dot_l: f32, h: vec3f) -> f32 {
     return 0.25 * min(1.0 / low, edge) / high;
 }
 
-/// The Fresnel equations of a dielectric with this reflectance at normal incidence, its index being (1 + sqrt f0) / (1 - sqrt f0).
-///
-/// With r = sqrt f0 all terms of Cook and Torrance are multiplied by 1 - r, so that f0 = 1, an infinite index, is one value like others, and
-/// g - c = 4 r / (g + c) does not cancel. The floors are for f0 = 0 and for f0 = 1 at the horizon, where the terms are 0 / 0.
-fn reflected(f0: vec3f, cosine: f32) -> vec3f {
-    let r = sqrt(f0);
-    let m = 1.0 - r;
-    let c = m * cosine;
-    let sum = max(sqrt(4.0 * r + c * c) + c, vec3f(1e-18));
-    let difference = 4.0 * r / sum;
-    let a = difference / sum;
-    let across = max(cosine, 1e-8);
-    let b = (across * sum - m) / (across * difference + m);
-    return 0.5 * a * a * (1.0 + b * b);
-}
-
-/// Share of the samples that facets draw, the others the diffuse part: by how much they reflect, seen from v. The floor keeps black from 0 / 0.
-fn facet_share(s: Surface, v: vec3f) -> f32 {
-    let facets = luminance(reflected(s.f0, clamp(dot(s.normal, v), 0.0, 1.0)));
-    return facets / max(facets + luminance(s.diffuse), 1e-20);
-}
-
-/// The mirror direction about a facet drawn by D n.h (Walter et al. 2007, eqs. 28 and 29), or a direction by the cosine.
+/// Facets by D n.h (Walter et al. 2007, eqs. 28 and 29), and the diffuse part: by how much both reflect, seen from v.
 fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
-    let share = facet_share(s, v);
-    if u.x < share {
-        // The floor keeps the logarithm of a u that rounding took to 1.
-        let slope = s.alpha * sqrt(-log(max(1.0 - u.x / share, 5.96e-8)));
-        let turn = 2.0 * PI * u.y;
-        return reflect(-v, frame_of(s.normal) * normalize(vec3f(slope * cos(turn), slope * sin(turn), 1.0)));
-    }
-    return cosine_sample(s.normal, vec2f((u.x - share) / (1.0 - share), u.y));
+    return slope_lobe_sample(s, vec2f(s.alpha), lobe_share(dielectric_reflectance(s.f0, dot(s.normal, v)), s.diffuse), v, u);
 }
 
-/// D n.h with the Jacobian of the mirror 1 / (4 |v.h|), and the cosine's density, each by its share, 1/sr. A facet drawn on the far side of v gives l
-/// below the horizon, and there v + l points into the surface: so without a sign.
+/// The density of that, 1/sr.
 fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
-    let h = v + l;
-    // v.h = |v + l| / 2. Where l is opposite to v no facet mirrors one into the other.
-    let size = max(length(h), 1e-12);
-    let facets = beckmann(s, h) * abs(dot(s.normal, h)) / size * 0.5 / size;
-    return mix(cosine_pdf(s.normal, l), facets, facet_share(s, v));
+    return slope_lobe_pdf(s, vec2f(s.alpha), lobe_share(dielectric_reflectance(s.f0, dot(s.normal, v)), s.diffuse), v, l);
 }

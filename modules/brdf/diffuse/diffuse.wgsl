@@ -1,6 +1,6 @@
 /// The diffuse part alone, 1/sr. Zero where either direction is at or below the horizon.
 fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
-    if dot(s.normal, v) <= 0.0 || dot(s.normal, l) <= 0.0 {
+    if !above_horizon(s.normal, v, l) {
         return vec3f(0.0);
     }
     return diffuse(s, v, l);

@@ -2,34 +2,26 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
-
-use crate::oracles::reflection::{angle, schlick};
+use crate::oracles::lobes::{directions, lit, lobe_share, mixed, schlick_rgb, slope_density, slope_mirror_density};
 use crate::oracles::{At, Truth};
 
-pub(super) const TRUTHS: &[(&str, Truth)] = &[("brdf", brdf)];
+pub(super) const TRUTHS: &[(&str, Truth)] = &[("brdf", brdf), ("brdf_pdf", brdf_pdf)];
 
 /// Kurt et al. 2010, one lobe and the diffuse term.
 fn brdf(at: &At) -> Vec<f64> {
-    let (normal, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
-    if normal.dot(v) <= 0.0 || normal.dot(l) <= 0.0 {
+    let Some(lit) = lit(at) else {
         return vec![0.0; 3];
-    }
-    let widths = at.vector("s.widths");
-    let h = v + l;
-    let theta = angle(normal, h);
-    let d = (-squared_slope(at, h)).exp() / (PI * widths.x * widths.y * theta.cos().powi(4));
-    let mirror = (angle(v, l) / 2.0).cos();
-    let attenuation = (angle(normal, v).cos() * angle(normal, l).cos()).powf(at.param("alpha_k"));
-    let f = at.vector("s.f0").to_array().map(|f0| schlick(f0, mirror));
-    (at.vector("s.diffuse") / PI + DVec3::from_array(f) * (d / (4.0 * mirror * attenuation)))
+    };
+    let d = slope_density(at, at.vector("s.widths"), lit.v + lit.l) / lit.theta_h.cos().powi(4);
+    let attenuation = (lit.theta_v.cos() * lit.theta_l.cos()).powf(at.param("alpha_k"));
+    let f = schlick_rgb(at.vector("s.f0"), lit.mirror.cos());
+    (at.vector("s.diffuse") / PI + f * (d / (4.0 * lit.mirror.cos() * attenuation)))
         .to_array()
         .to_vec()
 }
 
-/// tan^2(theta) (cos^2(phi) / ax^2 + sin^2(phi) / ay^2) of a half vector; phi is counted from the tangent.
-fn squared_slope(at: &At, h: DVec3) -> f64 {
-    let (normal, tangent, widths) = (at.vector("s.normal"), at.vector("s.tangent"), at.vector("s.widths"));
-    let phi = h.dot(normal.cross(tangent)).atan2(h.dot(tangent));
-    angle(normal, h).tan().powi(2) * ((phi.cos() / widths.x).powi(2) + (phi.sin() / widths.y).powi(2))
+/// A half vector by D n.h, mirrored, by its reflectance toward v.
+fn brdf_pdf(at: &At) -> Vec<f64> {
+    let share = lobe_share(at, schlick_rgb(at.vector("s.f0"), directions(at).theta_v.cos()));
+    mixed(at, share, slope_mirror_density(at, at.vector("s.widths")))
 }

@@ -1,27 +1,29 @@
 /// F D V + diffuse, 1/sr. Zero where either direction is below the horizon of the shading normal.
 fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
-    if dot(s.normal, v) <= 0.0 || dot(s.normal, l) <= 0.0 {
+    if !above_horizon(s.normal, v, l) {
         return vec3f(0.0);
     }
     // Opposite directions, both at the horizon, have no half vector; any will do, the normal is as good.
     let h = unit_or(v + l, s.normal);
     let facets = distribution(s, h) * masking(s, v, l, h);
+    if params.compensated {
+        return compensate(s, v, l, fresnel(s, dot(v, h)) * facets) + diffuse(s, v, l);
+    }
     return fresnel(s, dot(v, h)) * facets + diffuse(s, v, l);
 }
 
-/// Share of the samples that facets draw, the others the diffuse part: by how much they reflect, seen from v. The floor keeps black from 0 / 0.
-fn facet_share(s: Surface, v: vec3f) -> f32 {
-    let facets = luminance(fresnel(s, dot(s.normal, v)));
-    return facets / max(facets + luminance(s.diffuse), 1e-20);
+/// Share of the samples that facets draw, the others the diffuse part: by how much they reflect, seen from v.
+fn share_toward(s: Surface, v: vec3f) -> f32 {
+    return lobe_share(fresnel(s, dot(s.normal, v)), s.diffuse);
 }
 
 /// The mirror direction about a facet that v sees, or a direction by the cosine.
 fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
-    let share = facet_share(s, v);
+    let share = share_toward(s, v);
     if u.x < share {
         return reflect(-v, facet_sample(s, v, vec2f(u.x / share, u.y)));
     }
-    return cosine_sample(s.normal, vec2f((u.x - share) / (1.0 - share), u.y));
+    return diffuse_sample(s.normal, u, share);
 }
 
 /// The facets' density, by the Jacobian of the mirror 1 / (4 v.h) (Walter et al. 2007, eq. 14), and the cosine's, each by its share.
@@ -29,5 +31,5 @@ fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
     let h = unit_or(v + l, s.normal);
     // Where l is opposite to v no facet mirrors one into the other.
     let facets = facet_pdf(s, v, h) / max(4.0 * dot(v, h), 1e-12);
-    return mix(cosine_pdf(s.normal, l), facets, facet_share(s, v));
+    return mix(cosine_pdf(s.normal, l), facets, share_toward(s, v));
 }

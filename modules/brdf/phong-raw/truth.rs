@@ -2,30 +2,23 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
-
-use crate::oracles::reflection::angle;
+use crate::oracles::lobes::{diffuse_and_lobe, directions, lit, lobe_share, mirror_power, mixed, phong_exponent};
 use crate::oracles::{At, Truth};
 
-pub(super) const TRUTHS: &[(&str, Truth)] = &[("brdf", brdf)];
+pub(super) const TRUTHS: &[(&str, Truth)] = &[("brdf", brdf), ("brdf_pdf", brdf_pdf)];
 
 /// Phong 1975, both terms over pi; the exponent is that of facets as wide as alpha.
 fn brdf(at: &At) -> Vec<f64> {
-    let (normal, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
-    if normal.dot(v) <= 0.0 || normal.dot(l) <= 0.0 {
+    let Some(lit) = lit(at) else {
         return vec![0.0; 3];
-    }
-    let n = 2.0 / at.number("s.alpha").powi(2) - 2.0;
-    (at.vector("s.diffuse") / PI + at.vector("s.f0") / PI * lobe(normal, v, l, n))
-        .to_array()
-        .to_vec()
+    };
+    let n = phong_exponent(at.number("s.alpha"));
+    diffuse_and_lobe(at, 1.0 / PI * mirror_power(&lit, n))
 }
 
-/// The n-th power of the cosine of the angle between the eye and the mirror direction; nothing behind the lobe.
-fn lobe(normal: DVec3, v: DVec3, l: DVec3, n: f64) -> f64 {
-    let mirror = 2.0 * normal.dot(l) * normal - l;
-    if mirror.dot(v) < 0.0 {
-        return 0.0;
-    }
-    angle(mirror, v).cos().powf(n)
+/// (n + 1) / (2 pi) cos^n around the mirror direction. Lafortune and Willems 1994.
+fn brdf_pdf(at: &At) -> Vec<f64> {
+    let n = phong_exponent(at.number("s.alpha"));
+    let lobe = (n + 1.0) / (2.0 * PI) * mirror_power(&directions(at), n);
+    mixed(at, lobe_share(at, at.vector("s.f0")), lobe)
 }

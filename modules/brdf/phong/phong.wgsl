@@ -1,72 +1,25 @@
 /// diffuse / pi + f0 (n + 2) / (2 pi) cos^n of the angle between v and the mirror direction of l, 1/sr. Zero where either direction is below the horizon of the
 /// shading normal.
 fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
-    if dot(s.normal, v) <= 0.0 || dot(s.normal, l) <= 0.0 {
+    if !above_horizon(s.normal, v, l) {
         return vec3f(0.0);
     }
-    let n = exponent(s);
-    return s.diffuse * INV_PI + s.f0 * ((n + 2.0) * 0.5 * INV_PI * cosine_power(from_mirror(s, v, l), n));
-}
-
-/// 1 - cos of the angle between v and the mirror direction of l: half the square of the chord r - v = 2 (n.l) n - (l + v), whose parts along the
-/// normal and across it are small where the lobe is, so that nothing cancels.
-fn from_mirror(s: Surface, v: vec3f, l: vec3f) -> f32 {
-    let along = dot(s.normal, l - v);
-    let across = cross(s.normal, l + v);
-    return 0.5 * (along * along + dot(across, across));
-}
-
-/// Phong's exponent of a lobe as wide as facets of this alpha: 2 / alpha^2 - 2, without the difference of two numbers near each other.
-/// The floor is far below what a surface has, and its square is still a normal f32.
-fn exponent(s: Surface) -> f32 {
-    let alpha = max(s.alpha, 1e-12);
-    return max(2.0 * (1.0 - alpha) * (1.0 + alpha) / (alpha * alpha), 0.0);
-}
-
-/// (1 - x)^n; 0 for x > 1, behind the lobe.
-///
-/// With exponents of 1e8 an error of 6e-8 in 1 - x would be all, so the logarithm is taken of x itself: -ln(1 - x) = 2 artanh(x / (2 - x)),
-/// whose four terms leave 2e-8 for x below 1/4. The floor of the logarithm is that of a cosine of 0; below it a power of n > 1 is 0 anyway.
-fn cosine_power(x: f32, n: f32) -> f32 {
-    if x > 1.0 {
-        return 0.0;
-    }
-    let z = x / (2.0 - x);
-    let z2 = z * z;
-    let near = 2.0 * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (0.2 + z2 / 7.0)));
-    return exp(-n * select(-log(max(1.0 - x, 1e-30)), near, x < 0.25));
-}
-
-/// Share of the samples that the lobe draws, the others the diffuse part: by their colours. The floor keeps black from 0 / 0.
-fn lobe_share(s: Surface) -> f32 {
-    let lobe = luminance(s.f0);
-    return lobe / max(lobe + luminance(s.diffuse), 1e-20);
+    let n = exponent_of_alpha(s.alpha);
+    return s.diffuse * INV_PI + s.f0 * ((n + 2.0) * 0.5 * INV_PI * mirror_power(s, v, l, n));
 }
 
 /// Around the mirror direction of v by the lobe's own cosine, or a direction by the cosine to the normal.
 fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
-    let share = lobe_share(s);
+    let share = lobe_share(s.f0, s.diffuse);
     if u.x < share {
-        return lobe_sample(reflect(-v, s.normal), exponent(s), vec2f(u.x / share, u.y));
+        return cosine_power_sample(reflect(-v, s.normal), exponent_of_alpha(s.alpha), vec2f(u.x / share, u.y));
     }
-    return cosine_sample(s.normal, vec2f((u.x - share) / (1.0 - share), u.y));
-}
-
-/// A direction around the unit vector `axis` with the density (n + 1) / (2 pi) cos^n.
-///
-/// cos = (1 - u)^(1 / (n + 1)); the sine's square 1 - exp(-y) is a series where y is small, which it is for every smooth surface: its sixth
-/// term is below 2e-8 for y < 1/10. The floor keeps the logarithm of a u that rounding took to 1.
-fn lobe_sample(axis: vec3f, n: f32, u: vec2f) -> vec3f {
-    let y = -2.0 * log(max(1.0 - u.x, 5.96e-8)) / (n + 1.0);
-    let near = y * (1.0 - y * (0.5 - y * (1.0 / 6.0 - y * (1.0 / 24.0 - y / 120.0))));
-    let sine2 = select(1.0 - exp(-y), near, y < 0.1);
-    let turn = 2.0 * PI * u.y;
-    return frame_of(axis) * vec3f(sqrt(sine2) * vec2f(cos(turn), sin(turn)), sqrt(max(1.0 - sine2, 0.0)));
+    return diffuse_sample(s.normal, u, share);
 }
 
 /// (n + 1) / (2 pi) cos^n and the cosine's density, each by its share, 1/sr.
 fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
-    let n = exponent(s);
-    let lobe = (n + 1.0) * 0.5 * INV_PI * cosine_power(from_mirror(s, v, l), n);
-    return mix(cosine_pdf(s.normal, l), lobe, lobe_share(s));
+    let n = exponent_of_alpha(s.alpha);
+    let lobe = (n + 1.0) * 0.5 * INV_PI * mirror_power(s, v, l, n);
+    return mix(cosine_pdf(s.normal, l), lobe, lobe_share(s.f0, s.diffuse));
 }

@@ -28,9 +28,7 @@ fn distribution(tan2: f32) -> vec3f {
 
 /// f0 - f1 cosine + (1 - f0) (1 - cosine)^5: Schlick's term with a correction that was fitted. Not below 0, where fits can get.
 fn reflected(cosine: f32) -> vec3f {
-    let x = clamp(1.0 - cosine, 0.0, 1.0);
-    let x2 = x * x;
-    return max(params.f0 - params.f1 * cosine + (1.0 - params.f0) * (x2 * x2 * x), vec3f(0.0));
+    return max(schlick(params.f0, cosine) - params.f1 * cosine, vec3f(0.0));
 }
 
 /// G1 = 1 + lambda (1 - exp(c max(theta - theta_0, 0)^k)), within [0, 1].
@@ -52,9 +50,9 @@ fn arccos(cosine: f32) -> f32 {
 
 /// Share of the samples that facets draw, the others the diffuse part: by how much they reflect, seen from v, and never all or nothing, since the density
 /// of the facets is only near theirs.
-fn facet_share(s: Surface, v: vec3f) -> f32 {
-    let facets = luminance(params.rho_s * reflected(clamp(dot(s.normal, v), 0.0, 1.0)));
-    return clamp(facets / max(facets + luminance(params.rho_d), 1e-20), 0.1, 0.9);
+fn share_toward(s: Surface, v: vec3f) -> f32 {
+    let facets = params.rho_s * reflected(clamp(dot(s.normal, v), 0.0, 1.0));
+    return clamp(lobe_share(facets, params.rho_d), 0.1, 0.9);
 }
 
 /// Mean of the channels' alpha.
@@ -65,17 +63,16 @@ fn width() -> f32 {
 /// The mirror direction about a facet, or a direction by the cosine. Half of the facets are drawn by GGX of the width alpha, which has the core of
 /// the distribution, half by Beckmann of the width sqrt(alpha), which has its tail e^-(tan^2 / alpha).
 fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
-    let share = facet_share(s, v);
+    let share = share_toward(s, v);
     if u.x >= share {
-        return cosine_sample(s.normal, vec2f((u.x - share) / (1.0 - share), u.y));
+        return diffuse_sample(s.normal, u, share);
     }
     let twice = 2.0 * u.x / share;
     // The floors keep logarithm and quotient of a u that rounding took to 1.
     let core = width() * sqrt(twice / max(1.0 - twice, 5.96e-8));
     let tail = sqrt(-width() * log(max(2.0 - twice, 5.96e-8)));
     let slope = select(tail, core, twice < 1.0);
-    let turn = 2.0 * PI * u.y;
-    return reflect(-v, frame_of(s.normal) * normalize(vec3f(slope * cos(turn), slope * sin(turn), 1.0)));
+    return reflect(-v, frame_of(s.normal) * normalize(around(slope, 1.0, u.y)));
 }
 
 /// Both D n.h with the Jacobian of the mirror 1 / (4 |v.h|), and the cosine's density, each by its share, 1/sr. A facet drawn on the far side of v gives l
@@ -90,5 +87,5 @@ fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
     let secant = sqrt(1.0 + tan2);
     let facets = 0.5 * INV_PI * (ggx + beckmann) * secant * secant * secant;
     // v.h = |v + l| / 2. Where l is opposite to v no facet mirrors one into the other.
-    return mix(cosine_pdf(s.normal, l), facets * 0.5 / max(length(h), 1e-12), facet_share(s, v));
+    return mix(cosine_pdf(s.normal, l), facets * 0.5 / max(length(h), 1e-12), share_toward(s, v));
 }

@@ -8,58 +8,16 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     }
     // The floor is that of two cosines of 1e-15, less than dot products of unit vectors can tell from 0; with widths of 1e-4 the peak stays
     // in range.
-    let spread = 0.25 * INV_PI / area(s) * inverseSqrt(max(n_dot_v * n_dot_l, 1e-30));
-    return s.diffuse * INV_PI + s.f0 * (spread * exp(-slope_square(s, v + l)));
+    let spread = 0.25 * inverseSqrt(max(n_dot_v * n_dot_l, 1e-30));
+    return s.diffuse * INV_PI + s.f0 * (spread * slope_density(s, s.widths, v + l));
 }
 
-/// tan^2 (cos^2 / ax^2 + sin^2 / ay^2) of a half vector of any length, of either sign: the square of its slope, in widths.
-/// The floors keep 0 / 0 from widths below 1e-12 and half vectors in the surface, far outside of what a surface has. The cap, where the exponential
-/// has long been 0, keeps the square in range.
-fn slope_square(s: Surface, h: vec3f) -> f32 {
-    let tangential = vec2f(dot(s.tangent, h), dot(cross(s.normal, s.tangent), h));
-    let slope = tangential / (max(s.widths, vec2f(1e-12)) * max(abs(dot(s.normal, h)), 1e-18));
-    let kept = min(abs(slope), vec2f(1e9));
-    return dot(kept, kept);
-}
-
-/// ax ay, floored at 1e-12 each.
-fn area(s: Surface) -> f32 {
-    let widths = max(s.widths, vec2f(1e-12));
-    return widths.x * widths.y;
-}
-
-/// Share of the samples that the lobe draws, the others the diffuse part: by their colours. The floor keeps black from 0 / 0.
-fn lobe_share(s: Surface) -> f32 {
-    let lobe = luminance(s.f0);
-    return lobe / max(lobe + luminance(s.diffuse), 1e-20);
-}
-
-/// The mirror direction about a half vector whose slopes are normally distributed (Ward 1992; Walter 2005), or a direction by the cosine.
+/// Half vectors with normally distributed slopes (Ward 1992; Walter 2005), and the diffuse part.
 fn brdf_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
-    let share = lobe_share(s);
-    if u.x < share {
-        // The floor keeps the logarithm of a u that rounding took to 1.
-        let radius = sqrt(-log(max(1.0 - u.x / share, 5.96e-8)));
-        let turn = 2.0 * PI * u.y;
-        let slope = radius * s.widths * vec2f(cos(turn), sin(turn));
-        return reflect(-v, normalize(s.normal + s.tangent * slope.x + cross(s.normal, s.tangent) * slope.y));
-    }
-    return cosine_sample(s.normal, vec2f((u.x - share) / (1.0 - share), u.y));
+    return slope_lobe_sample(s, s.widths, lobe_share(s.f0, s.diffuse), v, u);
 }
 
-/// e^-slope^2 / (pi ax ay cos^3) with the Jacobian of the mirror 1 / (4 |v.h|) (Walter 2005), and the cosine's density, each by its share,
-/// 1/sr. A half vector drawn on the far side of v gives l below the horizon, and there v + l points into the surface: so without a sign.
+/// The density of that, 1/sr.
 fn brdf_pdf(s: Surface, v: vec3f, l: vec3f) -> f32 {
-    let h = v + l;
-    let size = length(h);
-    let diffuse = cosine_pdf(s.normal, l);
-    let share = lobe_share(s);
-    // Where l is opposite to v no half vector mirrors one into the other; f32 has no shorter sum of unit vectors but 0.
-    if size < 1e-12 {
-        return (1.0 - share) * diffuse;
-    }
-    // v.h = |v + l| / 2. Where cos is at its floor the exponential is 0.
-    let cosine = max(abs(dot(s.normal, h)) / size, 1e-8);
-    let lobe = exp(-slope_square(s, h)) / (cosine * cosine * cosine) * INV_PI / area(s) * 0.5 / size;
-    return mix(diffuse, lobe, share);
+    return slope_lobe_pdf(s, s.widths, lobe_share(s.f0, s.diffuse), v, l);
 }

@@ -11,7 +11,7 @@ fn diffuse(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     if n_dot_v <= 0.0 || n_dot_l <= 0.0 {
         return vec3f(0.0);
     }
-    let r = sqrt(s.alpha);
+    let r = s.diffuse_roughness;
     let scale = 1.0 / (1.0 + LOSS * r);
     let once = scale * shape(r, n_dot_v, n_dot_l, v - n_dot_v * s.normal, l - n_dot_l * s.normal);
 
@@ -43,13 +43,4 @@ fn missing(cosine: f32) -> f32 {
     let elevation = select(0.5 * PI - arcsine(sine), arcsine(mu), mu < sine);
     let rest = (0.5 * PI - 2.0 / 3.0) * mu * mu - (2.0 / 3.0) * sine * mu * (1.0 + sine + sine * sine);
     return INV_PI * (sine * (elevation + sine * mu) + rest / (1.0 + sine));
-}
-
-/// Inverse sine, relative error 1e-7, for x in [0, 0.71]: a polynomial in x^2 over half the range, since the built-in `acos` may be off by
-/// 7e-5 (WGSL, floating point accuracy).
-fn arcsine(x: f32) -> f32 {
-    let z = x * x;
-    let p = ((((((0.114312947 * z - 0.0974846855) * z + 0.0800461993) * z + 0.0154393734) * z + 0.0466496646) * z + 0.0748744085) * z
-        + 0.166669294);
-    return x + x * z * p;
 }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::oracles::lobes::{Lit, lit};
 use crate::oracles::reflection::angle;
 use crate::oracles::{At, Truth};
 
@@ -15,14 +16,20 @@ fn albedo_once(r: f64, theta: f64) -> f64 {
     a + r * a / PI * g
 }
 
-/// Portsmouth, Kutz and Hill 2025, listing 1, in angles; their roughness is the square root of `alpha`.
+/// Portsmouth, Kutz and Hill 2025, listing 1, in angles.
 fn diffuse(at: &At) -> Vec<f64> {
-    let (n, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
-    let (theta_v, theta_l) = (angle(n, v), angle(n, l));
-    if n.dot(v) <= 0.0 || n.dot(l) <= 0.0 {
+    let Some(Lit {
+        normal: n,
+        v,
+        l,
+        theta_v,
+        theta_l,
+        ..
+    }) = lit(at)
+    else {
         return vec![0.0; 3];
-    }
-    let r = at.number("s.alpha").sqrt();
+    };
+    let r = at.number("s.diffuse_roughness");
     let a = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * r);
     let s = theta_v.sin() * theta_l.sin() * angle(n.cross(v), n.cross(l)).cos();
     // The module stops a millionth of a radian above the horizon.

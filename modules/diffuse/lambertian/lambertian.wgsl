@@ -1,4 +1,4 @@
-/// Albedo / pi, 1/sr.
+/// Albedo / pi, 1/sr. Zero where either direction is at or below the horizon.
 fn diffuse(s: Surface, v: vec3f, l: vec3f) -> vec3f {
-    return s.diffuse * INV_PI;
+    return select(vec3f(0.0), s.diffuse * INV_PI, above_horizon(s.normal, v, l));
 }

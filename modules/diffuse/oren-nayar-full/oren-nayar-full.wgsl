@@ -8,8 +8,8 @@ fn diffuse(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     if n_dot_v <= 0.0 || n_dot_l <= 0.0 {
         return vec3f(0.0);
     }
-    // The facets' slopes have the root mean square alpha / sqrt(2): sigma is the angle with this tangent.
-    let sigma = arcsine(s.alpha * inverseSqrt(2.0 + s.alpha * s.alpha));
+    // The standard deviation of the walls' angle.
+    let sigma = arcsine(grooves_of_roughness(s.diffuse_roughness));
     let sigma2 = sigma * sigma;
     let c1 = 1.0 - 0.5 * sigma2 / (sigma2 + 0.33);
     let b = 0.45 * sigma2 / (sigma2 + 0.09);
@@ -51,13 +51,4 @@ fn diffuse(s: Surface, v: vec3f, l: vec3f) -> vec3f {
 fn turn(sine: f32, cosine: f32) -> f32 {
     let angle = arcsine(min(sine, cosine)) * (2.0 * INV_PI);
     return select(1.0 - angle, angle, sine < cosine);
-}
-
-/// Inverse sine, relative error 1e-7, for x in [0, 0.71]: a polynomial in x^2 over half the range, since the built-in `acos` may be off by
-/// 7e-5 (WGSL, floating point accuracy).
-fn arcsine(x: f32) -> f32 {
-    let z = x * x;
-    let p = ((((((0.114312947 * z - 0.0974846855) * z + 0.0800461993) * z + 0.0154393734) * z + 0.0466496646) * z + 0.0748744085) * z
-        + 0.166669294);
-    return x + x * z * p;
 }

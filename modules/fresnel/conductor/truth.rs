@@ -19,7 +19,11 @@ fn root(a: Complex) -> Complex {
 /// |a - b|^2 / |a + b|^2; 0 where neither medium differs from the other.
 fn reflectance(a: Complex, b: Complex) -> f64 {
     let sum = (a.0 + b.0).hypot(a.1 + b.1);
-    if sum == 0.0 { 0.0 } else { ((a.0 - b.0).hypot(a.1 - b.1) / sum).powi(2) }
+    if sum == 0.0 {
+        0.0
+    } else {
+        ((a.0 - b.0).hypot(a.1 - b.1) / sum).powi(2)
+    }
 }
 
 /// Born and Wolf 1999, section 14.2: the dielectric's amplitudes, with n + i k for the index.

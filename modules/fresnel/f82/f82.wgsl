@@ -8,10 +8,7 @@ const POWER: f32 = 0.462664366038;
 /// Not below 0: where f0 is low and the tint dark, the bump is wider than what it is taken from.
 fn fresnel(s: Surface, cosine: f32) -> vec3f {
     let c = clamp(cosine, 0.0, 1.0);
-    let x = 1.0 - c;
-    let x2 = x * x;
-    let x5 = x2 * x2 * x;
-    let schlick = s.f0 + (1.0 - s.f0) * x5;
+    let bump = c * (1.0 - c) * schlick_weight(c) * PEAK;
     let at_peak = s.f0 + (1.0 - s.f0) * POWER;
-    return max(schlick - (c * x5 * x * PEAK) * at_peak * (1.0 - params.tint), vec3f(0.0));
+    return max(schlick(s.f0, c) - bump * at_peak * (1.0 - params.tint), vec3f(0.0));
 }

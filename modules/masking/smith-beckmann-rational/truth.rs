@@ -1,19 +1,18 @@
 //! The fit itself: Smith's integral is the truth of what it approximates.
 
-use crate::oracles::reflection::angle;
+use crate::oracles::lobes::{Lit, lit};
 use crate::oracles::{At, Truth};
 
 pub(super) const TRUTHS: &[(&str, Truth)] = &[("masking", masking)];
 
 /// Heitz 2014, eq. 99, with the masking of one direction by Walter et al. 2007, eq. 27.
 fn masking(at: &At) -> Vec<f64> {
-    let (n, v, l) = (at.vector("s.normal"), at.vector("v"), at.vector("l"));
-    if n.dot(v) <= 0.0 || n.dot(l) <= 0.0 {
+    let Some(Lit { theta_v, theta_l, .. }) = lit(at) else {
         return vec![0.0];
-    }
-    let (tv, tl, alpha) = (angle(n, v), angle(n, l), at.number("s.alpha"));
-    let g2 = 1.0 / (1.0 / g1(alpha, tv) + 1.0 / g1(alpha, tl) - 1.0);
-    vec![g2 / (4.0 * tv.cos() * tl.cos())]
+    };
+    let alpha = at.number("s.alpha");
+    let g2 = 1.0 / (1.0 / g1(alpha, theta_v) + 1.0 / g1(alpha, theta_l) - 1.0);
+    vec![g2 / (4.0 * theta_v.cos() * theta_l.cos())]
 }
 
 /// Walter et al. 2007, eq. 27.

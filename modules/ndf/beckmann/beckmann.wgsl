@@ -8,10 +8,9 @@ const INV_SQRT_PI: f32 = 0.564189583547756;
 /// for a cosine of 1e-9, less than unit vectors can tell from 0; they keep alpha = 0 and the horizon from 0 / 0.
 fn distribution(s: Surface, h: vec3f) -> f32 {
     let cosine = dot(s.normal, h);
-    let across = cross(s.normal, h);
     let alpha = max(s.alpha, 1e-12);
     let cosine2 = max(cosine * cosine, 1e-18);
-    let slope2 = dot(across, across) / max(alpha * alpha * cosine2, 1e-30);
+    let slope2 = sine_square(s.normal, h) / max(alpha * alpha * cosine2, 1e-30);
     let k = exp(-0.5 * slope2) / (alpha * cosine2);
     return select(0.0, k * k * INV_PI, cosine > 0.0);
 }

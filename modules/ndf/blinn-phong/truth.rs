@@ -2,10 +2,11 @@
 
 use std::f64::consts::PI;
 
+use crate::oracles::lobes::{cosine_power, folded_density, phong_exponent};
 use crate::oracles::reflection::angle;
 use crate::oracles::{At, Truth};
 
-pub(super) const TRUTHS: &[(&str, Truth)] = &[("distribution", distribution)];
+pub(super) const TRUTHS: &[(&str, Truth)] = &[("distribution", distribution), ("facet_pdf", facet_pdf)];
 
 /// Walter et al. 2007, eq. 30, with the exponent of a width.
 fn distribution(at: &At) -> Vec<f64> {
@@ -14,8 +15,11 @@ fn distribution(at: &At) -> Vec<f64> {
         return vec![0.0];
     }
     let (alpha, theta) = (at.number("s.alpha"), angle(n, h));
-    let m = 2.0 / (alpha * alpha) - 2.0;
-    // ln(cos) from the half angle: a cosine near 1 has too few digits for a power of 2e8, in double precision as well.
-    let log_cos = (-2.0 * (0.5 * theta).sin().powi(2)).ln_1p();
-    vec![(m + 2.0) / (2.0 * PI) * (m * log_cos).exp()]
+    let m = phong_exponent(alpha);
+    vec![(m + 2.0) / (2.0 * PI) * cosine_power(theta, m)]
+}
+
+/// By D n.h, turned toward the viewer.
+fn facet_pdf(at: &At) -> Vec<f64> {
+    folded_density(at, distribution(at)[0])
 }

@@ -9,7 +9,7 @@ const SQRT_6: f32 = 2.449489742783178;
 fn distribution(s: Surface, h: vec3f) -> f32 {
     let cosine = dot(s.normal, h);
     let alpha = max(s.alpha, 1e-12);
-    let slope = length(cross(s.normal, h)) / (alpha * max(cosine, 1e-9));
+    let slope = sqrt(sine_square(s.normal, h)) / (alpha * max(cosine, 1e-9));
     let k = exp(-0.5 * SQRT_6 * slope) / (alpha * max(cosine * cosine, 1e-18));
     return select(0.0, 3.0 * k * k * INV_PI, cosine > 0.0);
 }
@@ -33,27 +33,5 @@ fn facet_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
 
 /// D n.h of the facets that v sees, 1/sr.
 fn facet_pdf(s: Surface, v: vec3f, h: vec3f) -> f32 {
-    return distribution(s, h) * max(dot(s.normal, h), 0.0) * facet_share(s, v, h);
-}
-
-/// The facet (sine, cosine) turned about n by u.y; by half a turn more where v sees it only so. So v sees every facet that is drawn.
-fn facet_toward(s: Surface, v: vec3f, sine: f32, cosine: f32, u: f32) -> vec3f {
-    let basis = frame_of(s.normal);
-    // Of angles beyond pi WGSL promises no sine.
-    let turn = PI * (2.0 * u - 1.0);
-    let side = sine * vec2f(cos(turn), sin(turn));
-    let h = basis * vec3f(side, cosine);
-    let turned = basis * vec3f(-side, cosine);
-    return select(h, turned, dot(v, h) < 0.0 && dot(v, turned) > 0.0);
-}
-
-/// How often h is drawn for once that its angle to n is: twice where v sees it but not h after half a turn, never where it is the
-/// other way round.
-fn facet_share(s: Surface, v: vec3f, h: vec3f) -> f32 {
-    let here = dot(v, h);
-    let turned = 2.0 * dot(s.normal, h) * dot(s.normal, v) - here;
-    if here < 0.0 && turned > 0.0 {
-        return 0.0;
-    }
-    return select(1.0, 2.0, here > 0.0 && turned < 0.0);
+    return distribution(s, h) * max(dot(s.normal, h), 0.0) * facet_multiplicity(s, v, h);
 }

@@ -4,24 +4,15 @@
 /// The floor of the denominator is alpha^2 of alpha = 1e-12, far below what a surface has; it keeps alpha = 0 from 0 / 0.
 fn distribution(s: Surface, h: vec3f) -> f32 {
     let cosine = dot(s.normal, h);
-    let across = cross(s.normal, h);
     let along = s.alpha * cosine;
-    let k = s.alpha / max(along * along + dot(across, across), 1e-24);
+    let k = s.alpha / max(along * along + sine_square(s.normal, h), 1e-24);
     return select(0.0, k * k * INV_PI, cosine > 0.0);
 }
 
-/// A facet as v sees it: where a sphere's cap is lit from the stretched v, and unstretched again. Dupuy and Benyoub 2023, listing 3.
+/// A facet as v sees it.
 fn facet_sample(s: Surface, v: vec3f, u: vec2f) -> vec3f {
     let basis = frame_of(s.normal);
-    let local = v * basis;
-    let stretched = normalize(vec3f(s.alpha * local.xy, local.z));
-    // Of angles beyond pi WGSL promises no sine.
-    let turn = PI * (2.0 * u.x - 1.0);
-    let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
-    let radius = sqrt(max(1.0 - z * z, 0.0));
-    let cap = vec3f(radius * cos(turn), radius * sin(turn), z) + stretched;
-    // Opposite to v the sum vanishes; it has no weight there.
-    return basis * unit_or(vec3f(s.alpha * cap.xy, max(cap.z, 0.0)), vec3f(0.0, 0.0, 1.0));
+    return basis * ggx_facet(vec2f(s.alpha), v * basis, u);
 }
 
 /// G1(v) v.h D(h) / n.v, 1/sr (Heitz 2014, eq. 16), with Smith's G1 = 2 n.v / (n.v + sqrt(alpha^2 + (1 - alpha^2) (n.v)^2)): n.v cancels.

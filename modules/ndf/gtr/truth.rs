@@ -2,10 +2,11 @@
 
 use std::f64::consts::PI;
 
+use crate::oracles::lobes::folded_density;
 use crate::oracles::reflection::angle;
 use crate::oracles::{At, Truth};
 
-pub(super) const TRUTHS: &[(&str, Truth)] = &[("distribution", distribution)];
+pub(super) const TRUTHS: &[(&str, Truth)] = &[("distribution", distribution), ("facet_pdf", facet_pdf)];
 
 /// Burley 2012, appendix B.2: c / (alpha^2 cos^2 + sin^2)^gamma and its three cases of c.
 fn distribution(at: &At) -> Vec<f64> {
@@ -27,4 +28,9 @@ fn distribution(at: &At) -> Vec<f64> {
     };
     let q = a2 * theta.cos().powi(2) + theta.sin().powi(2);
     vec![q.powf(-gamma) / (PI * mean)]
+}
+
+/// By D n.h, turned toward the viewer.
+fn facet_pdf(at: &At) -> Vec<f64> {
+    folded_density(at, distribution(at)[0])
 }

@@ -68,7 +68,9 @@ fn fragment_main(in: FragmentIn) -> FragmentOut {
     at.tangent = in.tangent;
     at.uv = in.uv;
     if params.double_sided {
+        // All three axes turn around, w being the third's: a map's normal is reversed as a whole, as glTF 2.0 has it (section 3.9.6).
         at.normal = select(-at.normal, at.normal, in.front);
+        at.tangent = select(-at.tangent, at.tangent, in.front);
     }
 
     let s = surface(at);

@@ -8,8 +8,11 @@
 //! ([`TRUTHS`](self) of that file, found by the build script as the modules are). A category's folder may have one for
 //! what its modules approximate.
 
+pub mod albedo;
+pub mod appearance;
 pub mod display;
 pub mod lights;
+pub mod lobes;
 pub mod quadrature;
 pub mod reflection;
 pub mod shadows;
@@ -20,7 +23,22 @@ use serde_json::Value as Json;
 /// What a function should give at a configuration: its numbers in the order of the result's members and components.
 pub type Truth = fn(&At) -> Vec<f64>;
 
-/// The `truth.rs` of every folder, as modules of this one.
+/// The numbers of a table that the project computes itself: equal bits on every machine.
+pub type Table = fn() -> Vec<f32>;
+
+/// What computes a table of a module's folder, `category/name`, by the resource's name.
+pub fn table(folder: &str, resource: &str) -> Option<Table> {
+    let (_, tables) = folders::TABLES.iter().find(|(of, _)| *of == folder)?;
+    tables.iter().find(|(of, _)| *of == resource).map(|(_, table)| *table)
+}
+
+/// Every table that the project computes: folder, resource and what computes it, sorted by folder.
+pub fn tables() -> impl Iterator<Item = (&'static str, &'static str, Table)> {
+    let all = folders::TABLES.iter();
+    all.flat_map(|(folder, tables)| tables.iter().map(|(resource, table)| (*folder, *resource, *table)))
+}
+
+/// The `truth.rs` and `table.rs` of every folder, as modules of this one.
 mod folders {
     include!(concat!(env!("OUT_DIR"), "/truths.rs"));
 }

@@ -37,7 +37,12 @@ pub fn ggx_g2_separable(alpha: f64, theta_v: f64, theta_l: f64) -> f64 {
 
 /// Masking and shadowing correlated by height. Heitz 2014, eq. 99.
 pub fn ggx_g2_correlated(alpha: f64, theta_v: f64, theta_l: f64) -> f64 {
-    1.0 / (1.0 + ggx_lambda(alpha, theta_v) + ggx_lambda(alpha, theta_l))
+    ggx_g2_of_widths([alpha; 2], [theta_v, theta_l])
+}
+
+/// The same where the two directions see facets of different widths.
+pub fn ggx_g2_of_widths(alpha: [f64; 2], theta: [f64; 2]) -> f64 {
+    1.0 / (1.0 + ggx_lambda(alpha[0], theta[0]) + ggx_lambda(alpha[1], theta[1]))
 }
 
 /// G2 / (4 cos cos), 0 at and below the horizon.

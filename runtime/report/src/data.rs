@@ -27,6 +27,77 @@ pub struct Report {
     pub agreement: Vec<Agreement>,
     /// Modules without a row in any experiment: name, and why.
     pub without: IndexMap<String, String>,
+    /// Best fits to tables of measured reflectance, where some were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fits: Vec<Fits>,
+}
+
+/// Best fits of models to a table of measured reflectance.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fits {
+    /// Name of the table's file.
+    pub name: String,
+    /// Its format, for people.
+    pub format: String,
+    /// Samples of the table that were fitted to.
+    pub fitted: usize,
+    /// Samples that the errors are over; the fitted ones are among them.
+    pub compared: usize,
+    /// The models, the best first.
+    pub rows: Vec<Fit>,
+    /// Models without a fit: name, and why.
+    pub without: IndexMap<String, String>,
+}
+
+/// A model's best fit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// Name of the model.
+    pub label: String,
+    /// Its recipe, as RON.
+    pub recipe: String,
+    /// Summary of the recipe's root module.
+    pub summary: String,
+    /// What was free, and what it became.
+    pub parameters: Vec<Fitted>,
+    /// Of `ln(1 + f cos)`, by channel.
+    pub errors: FitErrors,
+    /// What one call executes at the table's samples.
+    pub executed: Executed,
+    /// How often the model was evaluated over the fitted samples.
+    pub evaluations: usize,
+    /// Another row is no worse in error and in cost, and better in one.
+    pub dominated: bool,
+}
+
+/// Errors of a fit over the table's samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FitErrors {
+    /// Root of the mean square.
+    #[serde(deserialize_with = "or_nan")]
+    pub rms: f64,
+    /// Not exceeded by 95 % of the samples' channels.
+    #[serde(deserialize_with = "or_nan")]
+    pub p95: f64,
+    /// The largest.
+    #[serde(deserialize_with = "or_nan")]
+    pub max: f64,
+    /// Mean with its sign: above 0, the model is too high.
+    #[serde(deserialize_with = "or_nan")]
+    pub bias: f64,
+}
+
+/// What a free number or vector became.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fitted {
+    /// Path of the argument, or name of the parameter.
+    pub name: String,
+    /// Its components.
+    pub values: Vec<f64>,
+    /// Least and largest value that it could have had.
+    pub range: [f64; 2],
+    /// Whether a component is at an end of the range: a better one may lie beyond.
+    pub at_end: bool,
 }
 
 /// Where figures come from.

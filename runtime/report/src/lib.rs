@@ -15,6 +15,7 @@
 mod baseline;
 pub mod data;
 pub mod experiment;
+pub mod fit;
 mod measure;
 mod run;
 pub mod write;

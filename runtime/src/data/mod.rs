@@ -4,6 +4,7 @@
 
 pub mod photometry;
 
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -12,6 +13,8 @@ use std::sync::Arc;
 use shadewright_compiler::data::{self, Data, Origin, fits};
 use shadewright_compiler::diagnostics::{Diagnostic, codes};
 use shadewright_compiler::program::Program;
+
+use crate::measured::{Merl, Rgl};
 
 /// Largest file of data, bytes.
 pub const MAX_DATA: u64 = 256 << 20;
@@ -23,7 +26,16 @@ pub type Decoder = fn(&[u8]) -> Result<Vec<f32>, String>;
 pub const PLAIN: &str = "f32";
 
 /// Every format by name.
-pub const FORMATS: &[(&str, Decoder)] = &[(PLAIN, data::numbers), ("photometry", photometry::decode)];
+pub const FORMATS: &[(&str, Decoder)] = &[
+    (PLAIN, data::numbers),
+    ("merl", |bytes| {
+        Merl::read(bytes).map(|table| table.floats()).map_err(|why| why.to_string())
+    }),
+    ("rgl", |bytes| {
+        Rgl::read(bytes).map(|table| table.floats()).map_err(|why| why.to_string())
+    }),
+    ("photometry", photometry::decode),
+];
 
 /// Why bytes are no numbers.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -99,11 +111,14 @@ pub fn load(data: &Data) -> Result<Arc<[f32]>, Diagnostic> {
     }
 }
 
-/// The numbers of every binding of kind `Data` that a program has, by group and binding.
+/// Numbers by group and binding.
+pub type Tables = HashMap<(u32, u32), Arc<[f32]>>;
+
+/// The numbers of every binding of kind `Data` that a program has.
 ///
 /// # Errors
 /// As for [`load`].
-pub fn load_all(program: &Program) -> Result<Vec<((u32, u32), Arc<[f32]>)>, Diagnostic> {
+pub fn load_all(program: &Program) -> Result<Tables, Diagnostic> {
     let bindings = program.reflection().bindings.iter();
     bindings
         .filter_map(|binding| Some(((binding.group, binding.binding), program.data(binding)?)))

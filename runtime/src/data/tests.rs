@@ -114,7 +114,7 @@ fn bad_files_are_located() {
   |                                         ^^^ `a` is to be read so
   |
   = did you mean `f32`?
-  = formats: f32
+  = formats: f32, merl, rgl
 "
     );
 }
@@ -132,6 +132,80 @@ fn a_file_must_be_named() {
   |
 1 | (module: \"stepped\")
   |          ^^^^^^^^^ none is named here
+  |
+  = name one: `files: {\"measured\": \"PATH\"}`
+"
+    );
+}
+
+/// A scene whose surfaces have a table, with what is said of the BRDF.
+fn scene(brdf: &str) -> String {
+    format!(
+        "(
+    camera: (eye: (0, 0, 5), target: (0, 0, 0)),
+    pass: \"forward\",
+    meshes: {{\"ball\": Sphere(radius: 1)}},
+    materials: {{\"a\": {{\"brdf\": {brdf}}}}},
+    lights: [(module: \"point\")],
+    objects: [(mesh: \"ball\", material: \"a\")],
+)"
+    )
+}
+
+fn derive(brdf: &str, folder: &Path) -> Result<crate::frame::Frame, Report> {
+    let catalog = catalog(&[
+        (
+            "brdf/tabled/module.ron",
+            "(summary: \"tested\", resources: {\"measured\": (kind: Data(format: \"f32\"))})",
+        ),
+        (
+            "brdf/tabled/tabled.wgsl",
+            "var<storage> measured: array<f32>;\nfn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f { return vec3f(measured[0]); }",
+        ),
+    ]);
+    crate::scene::SceneFile::parse("a.scene.ron", &scene(brdf), folder)?.frame(&catalog, None)
+}
+
+/// Catches files of a scene that do not reach the frame, and two files at two places that one of them gets.
+#[test]
+fn scenes_name_files() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("one.f32"), floats(&[1.0])).unwrap();
+    let frame = derive("(module: \"tabled\", files: {\"measured\": \"one.f32\"})", folder.path()).unwrap();
+    assert_eq!(*frame.materials[0].settings.data["main.brdf"]["measured"], [1.0]);
+}
+
+/// Catches a scene's files that are taken as they are.
+#[test]
+fn files_of_scenes_are_located() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("cut.f32"), [0; 6]).unwrap();
+    let error = |brdf: &str| text(&derive(brdf, folder.path()).unwrap_err().render());
+    assert_eq!(
+        error("(module: \"tabled\", files: {\"measured\": \"cut.f32\"})"),
+        "error[SW0907]: the file `cut.f32` cannot be used
+  --> a.scene.ron:5:70
+  |
+5 |     materials: {\"a\": {\"brdf\": (module: \"tabled\", files: {\"measured\": \"cut.f32\"})}},
+  |                                                                      ^^^^^^^^^ 6 bytes are no whole number of 32-bit floats
+"
+    );
+    assert_eq!(
+        error("(module: \"tabled\", files: {\"measurd\": \"cut.f32\"})"),
+        "error[SW0214]: `tabled` takes no file `measurd`
+  --> a.scene.ron:5:58
+  |
+5 |     materials: {\"a\": {\"brdf\": (module: \"tabled\", files: {\"measurd\": \"cut.f32\"})}},
+  |                                                          ^^^^^^^^^ no such resource
+  |
+  = did you mean `measured`?
+  = resources that take a file: measured
+
+error[SW0215]: `tabled.measured` needs a file of the format `f32`
+  --> a.scene.ron:5:40
+  |
+5 |     materials: {\"a\": {\"brdf\": (module: \"tabled\", files: {\"measurd\": \"cut.f32\"})}},
+  |                                        ^^^^^^^^ none is named here
   |
   = name one: `files: {\"measured\": \"PATH\"}`
 "

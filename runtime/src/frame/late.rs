@@ -19,6 +19,7 @@ use crate::gpu::RuntimeError;
 use crate::gpu::pipeline::{Pipelines, bits};
 
 /// Something more general to draw with.
+#[allow(clippy::large_enum_variant, reason = "a handful of them exist, in a list")]
 #[derive(Clone, Debug)]
 pub enum Fallback {
     /// The same recipe with those of its frozen parameters as uniforms that can be. There is none where nothing is frozen.

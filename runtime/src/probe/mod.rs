@@ -14,8 +14,7 @@ mod numbers;
 mod table;
 mod time;
 
-use std::collections::HashMap;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use naga::Expression;
 use serde_json::{Value as Json, json};
@@ -55,7 +54,7 @@ pub struct Probe {
     /// The result's numbers.
     numbers: Vec<Number>,
     /// Numbers of the bindings of kind `Data`, by group and binding.
-    data: HashMap<(u32, u32), Arc<[f32]>>,
+    data: data::Tables,
     /// The program for the CPU, without pipeline constants.
     evaluator: OnceLock<Result<Evaluator, EvaluateError>>,
 }
@@ -79,7 +78,7 @@ impl Probe {
         let data = data::load_all(&program).map_err(Report::from)?;
         Ok(Self {
             function: function.to_owned(),
-            data: data.into_iter().collect(),
+            data,
             arguments: element(INPUT),
             numbers: result.members.iter().flat_map(|value| numbers(&value.layout)).collect(),
             result,

@@ -10,7 +10,7 @@ use shadewright_compiler::diagnostics::{Diagnostic, codes};
 use shadewright_compiler::manifest::{Step, Value, typed};
 
 use super::check::{Examiner, join};
-use super::{Choice, Choices, LightDecl, include, view};
+use super::{Choice, Choices, LightDecl, include, layers, view};
 use crate::frame::Mesh;
 use crate::mesh::gltf::Alpha;
 
@@ -136,6 +136,7 @@ fn include_file(
             if let Some(slot) = slot_of(pass, &module.category) {
                 look.insert(slot, Choices::One(Box::new(choice)));
             }
+            layers::lay(examiner, decl, material, pass, &mut look, &path);
         }
         looks.push(look);
     }

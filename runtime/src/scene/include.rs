@@ -12,6 +12,9 @@ use super::check::Examiner;
 use super::{Choice, Choices, GltfDecl, LightDecl, Picture};
 use crate::mesh::gltf::{Alpha, Light, Material};
 
+/// The texture whose light from all sides no module here has.
+const OCCLUSION: &str = "gltf:occlusionTexture";
+
 /// The module that represents a thing of glTF.
 pub(super) fn representing(examiner: &mut Examiner, decl: &GltfDecl, thing: &str, place: &str, path: &[Step]) -> Option<Arc<Module>> {
     if let Some(named) = decl.modules.get(thing) {
@@ -45,23 +48,59 @@ pub(super) fn representing(examiner: &mut Examiner, decl: &GltfDecl, thing: &str
     None
 }
 
+/// What keeps a module from standing for a material: the names of factors and textures that it has nothing for.
+fn lacking<'m>(module: &Module, material: &'m Material) -> Vec<&'m str> {
+    let has_param = |role: &str| module.manifest.params.values().any(|p| p.role.as_deref() == Some(role));
+    let has_slot = |thing: &str| module.manifest.slots.values().any(|s| s.represents.contains_key(thing));
+    let factors = material
+        .factors
+        .iter()
+        .filter(|(name, value)| !has_param(name) && !is_neutral(name, value));
+    let maps = material.maps.keys().filter(|name| !has_slot(name) && **name != OCCLUSION);
+    factors.map(|(name, _)| *name).chain(maps.copied()).collect()
+}
+
+/// The module for a material: the one that is named; else, of those that represent materials, the one that lacks least of what this one has, and of
+/// such the one with the fewest parameters.
+fn material_module(examiner: &mut Examiner, decl: &GltfDecl, material: &Material, place: &str, path: &[Step]) -> Option<Arc<Module>> {
+    const THING: &str = "gltf:material";
+    if decl.modules.contains_key(THING) {
+        return representing(examiner, decl, THING, place, path);
+    }
+    let cost = |m: &Module| (lacking(m, material).len(), m.manifest.params.len());
+    let fitting = examiner
+        .catalog
+        .modules()
+        .filter(|m| m.manifest.represents.iter().any(|r| r == THING));
+    let mut fitting: Vec<(_, &Arc<Module>)> = fitting.map(|m| (cost(m), m)).collect();
+    fitting.sort_by_key(|(cost, _)| *cost);
+    match fitting.as_slice() {
+        [(best, module), (next, _), ..] if best < next => Some(Arc::clone(module)),
+        // None, one, or several that are alike.
+        _ => representing(examiner, decl, THING, place, path),
+    }
+}
+
 /// A file's material as a choice of the module that represents materials.
 pub(super) fn material(examiner: &mut Examiner, decl: &GltfDecl, material: &Material, path: &[Step]) -> Option<(Arc<Module>, Choice)> {
     let place = format!("the material `{}`", material.name);
-    let module = representing(examiner, decl, "gltf:material", &place, path)?;
+    let module = material_module(examiner, decl, material, &place, path)?;
     let mut choice = Choice::new(module.name.clone());
-    let mut used: Vec<&str> = by_role(&mut choice, &module, &material.factors);
-    for (name, texture) in &material.textures {
+    let used: Vec<&str> = by_role(&mut choice, &module, &material.factors);
+    let unread = |examiner: &mut Examiner, module: &Module, name: &str| {
+        let message = format!("`{}`: `{}` has no parameter for {name}", decl.file, module.name);
+        examiner.error(path, codes::ASSET_UNSUPPORTED, message, place.clone());
+    };
+    for (name, used_map) in &material.maps {
         let slot = module
             .manifest
             .slots
             .iter()
             .find_map(|(slot, s)| Some((slot, s.represents.get(*name)?)));
         let Some((slot, filler)) = slot else {
-            if *name == "gltf:occlusionTexture" {
+            if *name == OCCLUSION {
                 // It darkens only what comes from all sides; light from lamps and the sun is not its business.
                 log::warn!("`{}`: {place}: {name} has no module and is left out", decl.file);
-                used.push("gltf:occlusionStrength");
                 continue;
             }
             let message = format!("`{}`: `{}` has no slot for {name}", decl.file, module.name);
@@ -72,21 +111,26 @@ pub(super) fn material(examiner: &mut Examiner, decl: &GltfDecl, material: &Mate
             continue;
         };
         let mut map = Choice::new(filler.name.clone());
-        used.extend(by_role(&mut map, &filler, &material.factors));
+        let used = by_role(&mut map, &filler, &used_map.factors);
+        for (name, value) in &used_map.factors {
+            if !used.contains(name) && !is_neutral(name, value) {
+                unread(examiner, &filler, name);
+            }
+        }
         let texture_of = filler
             .manifest
             .resources
             .iter()
             .find(|(_, r)| matches!(r.kind, ResourceKind::Texture { .. }));
         if let Some((resource, _)) = texture_of {
-            map.textures.insert(resource.clone(), Picture::Loaded(Arc::clone(texture)));
+            map.textures
+                .insert(resource.clone(), Picture::Loaded(Arc::clone(&used_map.texture)));
         }
         choice.fill.insert(slot.clone(), Choices::One(Box::new(map)));
     }
     for (name, value) in &material.factors {
         if !used.contains(name) && !is_neutral(name, value) {
-            let message = format!("`{}`: `{}` has no parameter for {name}", decl.file, module.name);
-            examiner.error(path, codes::ASSET_UNSUPPORTED, message, place.clone());
+            unread(examiner, &module, name);
         }
     }
     if let Alpha::Blend = material.alpha {

@@ -10,6 +10,7 @@ mod derive;
 mod format;
 mod gather;
 mod include;
+mod layers;
 mod path;
 mod recipe;
 #[cfg(test)]

@@ -59,7 +59,7 @@ fn default_seed() -> u64 {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Alternatives {
-    /// Every module of the category (in a category's folder), or the module (in its own).
+    /// Every module of the category that has no experiment of its own about the function (in a category's folder), or the module (in its own).
     #[default]
     All,
     /// These recipes, by label.
@@ -77,6 +77,7 @@ pub enum Params {
 }
 
 /// What a module should give.
+#[allow(clippy::large_enum_variant, reason = "one exists for an experiment")]
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub enum TruthSource {
     /// The closed form in the folder of each alternative's root module.

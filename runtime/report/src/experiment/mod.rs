@@ -66,7 +66,23 @@ pub fn load(library: &dyn Library, catalog: &Catalog) -> Result<Vec<Experiment>,
         }
     }
     Report::unless_empty(errors)?;
+    leave_to_their_own(&mut found);
     Ok(found)
+}
+
+/// Takes modules out of their category's experiments about a function for which they have experiments in their own folders.
+fn leave_to_their_own(experiments: &mut [Experiment]) {
+    let own: Vec<(String, String)> = experiments.iter().map(|e| (e.folder.clone(), e.function.clone())).collect();
+    for experiment in experiments
+        .iter_mut()
+        .filter(|e| e.folder == e.category && matches!(e.declared.alternatives, Alternatives::All))
+    {
+        let function = &experiment.function;
+        experiment.alternatives.retain(|alternative| {
+            let folder = format!("{}/{}", alternative.root.category, alternative.root.name);
+            !own.contains(&(folder, function.clone()))
+        });
+    }
 }
 
 /// Reads the experiments of one folder; none where it has no file.

@@ -25,7 +25,10 @@ use serde_json::{Value as Json, json};
 use shadewright_compiler::Report;
 use shadewright_runtime::gpu::RuntimeError;
 
-pub(crate) use row::{Effort, Measured, OnDevice, configurations, key, mark_dominated, measure};
+pub(crate) use errors::statistics;
+pub(crate) use executed::executed;
+pub(crate) use row::{Effort, Measured, OnDevice, configurations, key, mark_dominated, measure, one_line};
+pub(crate) use sample::{Random, latin};
 pub(crate) use subject::Subject;
 
 use crate::data::Worst;
@@ -55,6 +58,9 @@ pub enum MeasureError {
     /// A finished row cannot be kept.
     #[error("a finished row cannot be kept: {0}")]
     Keep(#[from] std::io::Error),
+    /// The solver of a fit gave up.
+    #[error("a fit ends without a result: {0}")]
+    Fit(String),
     /// Somebody asked to stop.
     #[error("interrupted")]
     Interrupted,

@@ -7,6 +7,7 @@ use std::hash::Hash as _;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
+use shadewright_compiler::Recipe;
 use shadewright_evaluate::Allowed;
 use shadewright_modules::oracles;
 use shadewright_runtime::gpu::Gpu;
@@ -268,18 +269,16 @@ pub(crate) fn key(subject: &Subject, rows: &[Json], effort: &Effort, provenance:
 
 /// The recipe as a person would type it: the bare name, or RON.
 pub(super) fn recipe_text(subject: &Subject) -> String {
-    let node = &subject.alternative.recipe.root;
+    one_line(&subject.alternative.recipe)
+}
+
+/// A recipe on one line, the module's name alone where that is all.
+pub(crate) fn one_line(recipe: &Recipe) -> String {
+    let node = &recipe.root;
     if node.fill.is_empty() && node.freeze.is_empty() && node.files.is_empty() {
         return node.module.clone();
     }
-    subject
-        .alternative
-        .recipe
-        .source
-        .text
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
+    recipe.source.text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// What a search found, on its way into the row.

@@ -3,12 +3,36 @@
 use super::faults::of_row;
 use super::number::{count, number, optional, signed};
 use super::tables::costs;
-use super::text::clean;
-use crate::data::{Cost, Report, Results, Row};
+use super::text::{clean, parameters};
+use crate::data::{Cost, Fits, Report, Results, Row};
 
 /// Short tables, a section for each experiment: model error, rounding of the evaluator's f32, verdict, cost. No device, no time, no date.
 pub fn markdown(report: &Report) -> String {
-    report.experiments.iter().map(section).collect::<Vec<_>>().join("\n")
+    let sections = report.experiments.iter().map(section).chain(report.fits.iter().map(fits));
+    sections.collect::<Vec<_>>().join("\n")
+}
+
+/// Best fits to a table of measured reflectance.
+fn fits(fits: &Fits) -> String {
+    let mut text = format!(
+        "## Best fits to {}\n\n{}; {}, fitted to {}. Errors are differences of ln(1 + f cos).\n\n",
+        cell(&fits.name),
+        cell(&fits.format),
+        count(fits.compared, "sample"),
+        fits.fitted
+    );
+    text += "| model | RMS | p95 | max | bias | executed | best fit |\n|---|---|---|---|---|---|---|\n";
+    for row in &fits.rows {
+        let errors = &row.errors;
+        let figures = [errors.rms, errors.p95, errors.max].map(number).join(" | ");
+        let (bias, cost) = (signed(errors.bias), number(row.executed.mean));
+        text += &format!(
+            "| {} | {figures} | {bias} | {cost} | {} |\n",
+            cell(&row.label),
+            cell(&parameters(row))
+        );
+    }
+    text
 }
 
 fn section(results: &Results) -> String {

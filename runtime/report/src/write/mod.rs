@@ -16,8 +16,9 @@ mod tables;
 pub use drawing::pareto::dominated;
 pub use faults::{Fault, Kind, faults};
 pub use markdown::markdown;
+pub use number::number;
 pub use sheet::{Tile, sheet, sheet_size};
-pub use text::replay;
+pub use text::{parameters, replay};
 
 use crate::data::Report;
 

@@ -13,7 +13,7 @@ use super::drawing::colour::Colour;
 use super::faults::{self, Fault, Kind, faults};
 use super::number::{count, number};
 use super::text::{happened, value};
-use crate::data::{Agreement, Errors, Report, Results, Row, Worst};
+use crate::data::{Agreement, Errors, Fits, Report, Results, Row, Worst};
 
 /// The template. It is well-formed XML as well as HTML, and so is the page.
 const TEMPLATE: &str = include_str!("page.html");
@@ -27,10 +27,18 @@ struct Page<'a> {
     faults: Vec<FaultLine>,
     overview: Table,
     sections: Vec<Section<'a>>,
+    fits: Vec<FitSection<'a>>,
     agreement: Option<Table>,
     /// Largest differences of functions without a fault.
     closest: Vec<FaultLine>,
     without: Vec<(&'a String, &'a String)>,
+}
+
+/// Best fits to one table.
+#[derive(Serialize)]
+struct FitSection<'a> {
+    fits: &'a Fits,
+    table: Table,
 }
 
 #[derive(Serialize)]
@@ -123,6 +131,14 @@ pub fn page(report: &Report, figures: &[Figures]) -> Result<String, WriteError> 
             .iter()
             .zip(figures)
             .map(|(results, figures)| section(results, figures))
+            .collect(),
+        fits: report
+            .fits
+            .iter()
+            .map(|fits| FitSection {
+                fits,
+                table: table::fits(fits),
+            })
             .collect(),
         agreement: (!report.agreement.is_empty()).then(|| table::agreement(&report.agreement)),
         closest: report.agreement.iter().filter_map(closest_line).collect(),

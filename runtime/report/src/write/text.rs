@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use super::number::MISSING;
-use crate::data::Worst;
+use super::number::{MISSING, number};
+use crate::data::{Fit, Worst};
 
 /// The command that evaluates a recipe's function at one input, for a POSIX shell.
 pub fn replay(recipe: &str, function: &str, input: &Value) -> String {
@@ -31,6 +31,22 @@ pub fn happened(worst: &Worst) -> String {
         Value::Null => format!("{name} = {got}"),
         _ => format!("{name} = {got}, should be {}", value(&worst.expected)),
     }
+}
+
+/// What a fit found: `s.alpha 0.2, s.f0 (0.9, 0.7, 0.3)`, with `*` behind what is at an end of its range.
+pub fn parameters(fit: &Fit) -> String {
+    let one = |fitted: &crate::data::Fitted| {
+        let values: Vec<String> = fitted.values.iter().map(|value| number(*value)).collect();
+        let end = if fitted.at_end { "*" } else { "" };
+        match &values[..] {
+            [one] => format!("{} {one}{end}", fitted.name),
+            all => format!("{} ({}){end}", fitted.name, all.join(", ")),
+        }
+    };
+    if fit.parameters.is_empty() {
+        return "nothing is free".to_owned();
+    }
+    fit.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 /// Without the characters that no XML may hold, and on one line.

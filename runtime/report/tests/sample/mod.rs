@@ -242,5 +242,6 @@ pub fn report() -> Report {
             agreement(HOSTILE, 1),
         ],
         without,
+        fits: Vec::new(),
     }
 }

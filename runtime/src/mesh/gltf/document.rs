@@ -9,7 +9,8 @@ use gltf::json;
 use indexmap::IndexMap;
 use shadewright_compiler::manifest::Value;
 
-use super::{Alpha, Asset, Camera, GltfError, Light, MAX_NODES, Material, Object, Perspective, damaged, files, geometry, unsupported};
+use super::{Alpha, Asset, Camera, GltfError, Light, MAX_NODES, Map, Material, Object, Perspective};
+use super::{damaged, extensions, files, geometry, unsupported};
 use crate::frame::{Mesh, Texture};
 use crate::image::decode_texture;
 
@@ -25,18 +26,22 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Asset, GltfError> {
     }
     let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(bytes).map_err(|e| damaged("the file", e))?;
     // Named before the validator refuses them without naming them.
+    let taken = |extension: &str| TAKEN.contains(&extension) || extensions::READ.contains(&extension);
     for extension in document.extensions_required() {
-        if !TAKEN.contains(&extension) {
+        if !taken(extension) {
             return Err(unsupported("extensionsRequired", format!("the extension {extension}")));
         }
     }
     for extension in document.extensions_used() {
-        if !TAKEN.contains(&extension) {
+        if !taken(extension) {
             log::warn!("glTF: the optional extension {extension} is not drawn");
         }
     }
     check_alternatives(document.as_json())?;
-    let document = gltf::Document::from_json(document.into_json()).map_err(|e| damaged("the file", e))?;
+    let mut root = document.into_json();
+    // The validator knows those only that the crate reads.
+    root.extensions_required.retain(|e| !extensions::READ.contains(&e.as_str()));
+    let document = gltf::Document::from_json(root).map_err(|e| damaged("the file", e))?;
 
     let buffers = buffers(&document, blob, folder)?;
     let mut reader = Reader {
@@ -164,30 +169,45 @@ impl Reader<'_> {
         if let Alpha::Mask(cutoff) = made.alpha {
             made.factors.insert("gltf:alphaCutoff", Value::Number(cutoff.into()));
         }
-        let plain = |info: gltf::texture::Info| (info.texture().index(), info.tex_coord());
-        let mut textures: Vec<(&'static str, (usize, u32))> = Vec::new();
-        textures.extend(pbr.base_color_texture().map(|t| ("gltf:baseColorTexture", plain(t))));
-        textures.extend(
-            pbr.metallic_roughness_texture()
-                .map(|t| ("gltf:metallicRoughnessTexture", plain(t))),
-        );
-        textures.extend(material.emissive_texture().map(|t| ("gltf:emissiveTexture", plain(t))));
+        let extra = extensions::read(material, place)?;
+        made.factors.extend(extra.factors);
+        made.layers = extra.layers;
+        // Name, texture, set of coordinates, and a factor of this use.
+        type Used = (&'static str, usize, u32, Option<(&'static str, f32)>);
+        let plain = |name: &'static str, info: gltf::texture::Info| -> Used { (name, info.texture().index(), info.tex_coord(), None) };
+        let mut used: Vec<Used> = Vec::new();
+        used.extend(pbr.base_color_texture().map(|t| plain("gltf:baseColorTexture", t)));
+        used.extend(pbr.metallic_roughness_texture().map(|t| plain("gltf:metallicRoughnessTexture", t)));
+        used.extend(material.emissive_texture().map(|t| plain("gltf:emissiveTexture", t)));
         if let Some(normal) = material.normal_texture() {
-            made.factors.insert("gltf:normalScale", Value::Number(normal.scale().into()));
-            textures.push(("gltf:normalTexture", (normal.texture().index(), normal.tex_coord())));
+            let scale = ("gltf:normalScale", normal.scale());
+            used.push(("gltf:normalTexture", normal.texture().index(), normal.tex_coord(), Some(scale)));
         }
         if let Some(occlusion) = material.occlusion_texture() {
-            made.factors
-                .insert("gltf:occlusionStrength", Value::Number(occlusion.strength().into()));
-            textures.push(("gltf:occlusionTexture", (occlusion.texture().index(), occlusion.tex_coord())));
+            let strength = ("gltf:occlusionStrength", occlusion.strength());
+            used.push((
+                "gltf:occlusionTexture",
+                occlusion.texture().index(),
+                occlusion.tex_coord(),
+                Some(strength),
+            ));
         }
-        for (name, (texture, set)) in textures {
+        for (name, info) in extra.textures {
+            used.push((
+                name,
+                info.index,
+                info.tex_coord,
+                info.scale.map(|scale| ("gltf:normalScale", scale)),
+            ));
+        }
+        for (name, texture, set, factor) in used {
             let word = name.trim_start_matches("gltf:");
             if set != 0 {
                 return Err(unsupported(format!("{place}.{word}"), format!("texture coordinate set {set}")));
             }
             let texture = self.texture(texture, &format!("textures[{texture}]"))?;
-            made.textures.insert(name, texture);
+            let factors = factor.map(|(name, x)| (name, Value::Number(x.into()))).into_iter().collect();
+            made.maps.insert(name, Map { texture, factors });
         }
         Ok(made)
     }

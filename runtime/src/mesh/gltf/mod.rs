@@ -5,6 +5,7 @@
 
 mod accessor;
 mod document;
+mod extensions;
 mod files;
 mod geometry;
 #[cfg(test)]
@@ -62,11 +63,22 @@ pub struct Material {
     /// in cd/m2 and 1 where the file says nothing.
     pub factors: IndexMap<&'static str, Value>,
     /// By glTF's name (`gltf:baseColorTexture`).
-    pub textures: IndexMap<&'static str, Arc<Texture>>,
+    pub maps: IndexMap<&'static str, Map>,
+    /// Extensions with effect that are more than numbers, by name (`gltf:KHR_materials_sheen`): what lies above after what lies below.
+    pub layers: Vec<&'static str>,
     /// Both sides are drawn.
     pub double_sided: bool,
     /// What alpha means.
     pub alpha: Alpha,
+}
+
+/// A texture of a material.
+#[derive(Clone, Debug)]
+pub struct Map {
+    /// The picture.
+    pub texture: Arc<Texture>,
+    /// What is said of this use of it: `gltf:normalScale` of normal maps, `gltf:occlusionStrength`.
+    pub factors: IndexMap<&'static str, Value>,
 }
 
 /// What a material's alpha means.

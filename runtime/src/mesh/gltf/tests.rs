@@ -142,12 +142,13 @@ fn reads_what_it_says() {
     assert_eq!(paint.factors["gltf:baseColorFactor.a"], Value::Number(0.75));
     assert_eq!(paint.factors["gltf:emissiveFactor"], Value::List(vec![1.0, 0.5, 0.0]));
     assert_eq!(paint.factors["gltf:emissiveStrength"], Value::Number(100.0));
-    assert_eq!(paint.factors["gltf:normalScale"], Value::Number(0.5));
+    assert_eq!(paint.maps["gltf:normalTexture"].factors["gltf:normalScale"], Value::Number(0.5));
+    assert!(paint.layers.is_empty());
     assert_eq!((paint.alpha, paint.double_sided), (Alpha::Mask(0.25), true));
-    assert_eq!(paint.textures["gltf:baseColorTexture"].rgba, [255, 0, 0, 255, 0, 255, 0, 128]);
+    assert_eq!(paint.maps["gltf:baseColorTexture"].texture.rgba, [255, 0, 0, 255, 0, 255, 0, 128]);
     assert!(Arc::ptr_eq(
-        &paint.textures["gltf:baseColorTexture"],
-        &paint.textures["gltf:normalTexture"]
+        &paint.maps["gltf:baseColorTexture"].texture,
+        &paint.maps["gltf:normalTexture"].texture
     ));
 
     assert_eq!(

@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use crate::data::{Agreement, Cost, Errors, Report, Results, Row};
+use crate::data::{Agreement, Cost, Errors, Fits, Report, Results, Row};
 use crate::write::drawing::Figures;
 use crate::write::faults::of_row;
 use crate::write::number::{MISSING, count, number, optional, signed};
 use crate::write::tables;
-use crate::write::text::short;
+use crate::write::text::{parameters, short};
 
 /// A table with a name for each row.
 #[derive(Serialize)]
@@ -340,6 +340,49 @@ pub fn agreement(all: &[Agreement]) -> Table {
     });
     let results: usize = all.iter().map(|one| one.results).sum();
     let caption = format!("{} in {}", count(results, "result"), count(all.len(), "function"));
+    let lines = lines.collect();
+    columns.table(caption, lines)
+}
+
+/// Models' best fits to a table of measured reflectance.
+pub fn fits(fits: &Fits) -> Table {
+    let mut columns = Columns(Vec::new(), Vec::new());
+    columns
+        .group(
+            "Difference of ln(1 + f cos)",
+            &[
+                ("RMS", "Root of the mean square over the table's samples", false),
+                ("p95", "Not exceeded by 95 % of the samples' channels", false),
+                ("max", "", false),
+                ("bias", "Mean with its sign: above 0, the model is too high", false),
+            ],
+        )
+        .group("One call executes", &[("mean", "Weighted operations, mean of the samples", false)])
+        .group("", &[("best fit", "* is at an end of its range", true)]);
+    let lines = fits.rows.iter().map(|row| {
+        let errors = &row.errors;
+        Line {
+            name: row.label.clone(),
+            link: String::new(),
+            title: row.summary.clone(),
+            dominated: row.dominated,
+            baseline: false,
+            cells: vec![
+                Cell::number(errors.rms),
+                Cell::number(errors.p95),
+                Cell::number(errors.max),
+                Cell::shown(signed(errors.bias), errors.bias),
+                Cell::number(row.executed.mean),
+                Cell::text(parameters(row)),
+            ],
+        }
+    });
+    let caption = format!(
+        "Best fits to {}: {}; fitted to {}",
+        short(&fits.name, 80),
+        count(fits.compared, "sample"),
+        fits.fitted
+    );
     let lines = lines.collect();
     columns.table(caption, lines)
 }
