@@ -48,7 +48,7 @@ fn fits_models_to_a_file() {
         ]);
         let lines: Vec<&str> = said.text().lines().collect();
         assert!(
-            lines[0].starts_with("brdf/microfacet: RMS ") && lines[0].contains("s.alpha 0.25"),
+            lines[0].starts_with("brdf/microfacet: RMS ") && lines[0].contains("s.alpha 0.250"),
             "{}",
             said.text()
         );

@@ -47,22 +47,28 @@ fn tables_are_written() {
 fn what_cannot_be_written_is_said() {
     let library = library();
     let modules = library.path().to_str().unwrap();
-    let run = |more: &[&str]| [&["--modules", modules, "table"], more].concat();
+    fn with<'a>(modules: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+        [&["--modules", modules, "table"], more].concat()
+    }
     let file = library.path().join("ndf/stepped/own.f32");
     let named = file.to_str().unwrap();
     let out = library.path().join("out.f32");
     let to = out.to_str().unwrap();
-    good(&run(&["stepped", "named", "--file", named, "-o", to]));
+    good(&with(modules, &["stepped", "named", "--file", named, "-o", to]));
     assert_eq!(fs::read(&out).unwrap(), [0, 0, 0x80, 0x3f, 0, 0, 0, 0x40]);
     fs::remove_file(&out).unwrap();
-    bad(&run(&["stepped", "named", "-o", to]), 1, &["--file", "`f32`"]);
-    bad(&run(&["stepped", "own", "--file", named, "-o", to]), 2, &["takes no other file"]);
-    bad(&run(&["stepped", "own", "--make", "-o", to]), 1, &["no `table.rs`"]);
-    bad(&run(&["stepped", "owm", "-o", to]), 1, &["SW0214", "did you mean `own`?"]);
+    bad(&with(modules, &["stepped", "named", "-o", to]), 1, &["--file", "`f32`"]);
+    bad(
+        &with(modules, &["stepped", "own", "--file", named, "-o", to]),
+        2,
+        &["takes no other file"],
+    );
+    bad(&with(modules, &["stepped", "own", "--make", "-o", to]), 1, &["no `table.rs`"]);
+    bad(&with(modules, &["stepped", "owm", "-o", to]), 1, &["SW0214", "did you mean `own`?"]);
     fs::write(library.path().join("cut"), [0; 7]).unwrap();
     let cut = library.path().join("cut");
     bad(
-        &run(&["stepped", "named", "--file", cut.to_str().unwrap(), "-o", to]),
+        &with(modules, &["stepped", "named", "--file", cut.to_str().unwrap(), "-o", to]),
         1,
         &["7 bytes are no whole number"],
     );

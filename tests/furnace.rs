@@ -15,7 +15,9 @@ use shadewright::runtime::gpu::pipeline::Pipelines;
 use shadewright::runtime::probe::Probe;
 
 /// Directions drawn by the module, and as many by the cosine.
-const DRAWN: usize = 1024;
+const DRAWN: usize = 512;
+/// The same for smooth surfaces, whose lobe is narrow and wide at once.
+const DRAWN_FOR_SMOOTH: usize = 4096;
 
 /// Catches a table in the repository that is not what its `table.rs` computes, down to the last bit, and a program without a table.
 #[test]
@@ -49,7 +51,7 @@ impl Device {
 
     /// Albedo of white facets toward an eye at an angle, for each alpha and angle, and its standard error. Half of the directions are the
     /// module's, half the cosine's, each weighted by both densities (Veach and Guibas 1995).
-    fn furnace(&self, recipe: &str, alphas: &[f64], degrees: &[f64]) -> Vec<(f64, f64, f64, f64)> {
+    fn furnace(&self, recipe: &str, alphas: &[f64], degrees: &[f64], count: usize) -> Vec<(f64, f64, f64, f64)> {
         let configurations: Vec<(f64, f64)> = alphas.iter().flat_map(|a| degrees.iter().map(|d| (*a, *d))).collect();
         let at = |(alpha, degrees): (f64, f64), more: Json| {
             let mut row = json!({
@@ -62,13 +64,13 @@ impl Device {
         let u = |i: usize| [(0.5 + 0.754_877_666 * i as f64).fract(), (0.5 + 0.569_840_291 * i as f64).fract()];
         let draws: Vec<Json> = configurations
             .iter()
-            .flat_map(|c| (0..DRAWN).map(|i| at(*c, json!({"u": u(i)}))))
+            .flat_map(|c| (0..count).map(|i| at(*c, json!({"u": u(i)}))))
             .collect();
         let drawn = self.values(recipe, "brdf_sample", &draws);
         let mut rows = Vec::new();
         for (index, c) in configurations.iter().enumerate() {
-            for i in 0..DRAWN {
-                rows.push(at(*c, json!({"l": drawn[index * DRAWN + i]})));
+            for i in 0..count {
+                rows.push(at(*c, json!({"l": drawn[index * count + i]})));
                 let [a, b] = u(i);
                 rows.push(at(*c, json!({"l": direction(a.sqrt().asin(), TAU * b).to_array()})));
             }
@@ -87,7 +89,7 @@ impl Device {
                 }
             })
             .collect();
-        let found = configurations.iter().zip(weights.chunks(2 * DRAWN));
+        let found = configurations.iter().zip(weights.chunks(2 * count));
         found
             .map(|((alpha, degrees), weights)| {
                 let mean = weights.iter().sum::<f64>() / weights.len() as f64;
@@ -98,7 +100,8 @@ impl Device {
     }
 }
 
-const ALPHAS: [f64; 6] = [0.01, 0.03, 0.1, 0.3, 0.6, 1.0];
+const SMOOTH: f64 = 0.01;
+const ALPHAS: [f64; 5] = [0.03, 0.1, 0.3, 0.6, 1.0];
 const ANGLES: [f64; 7] = [0.0, 30.0, 60.0, 80.0, 85.0, 89.0, 89.9];
 
 fn compensated(by: &str) -> String {
@@ -115,7 +118,9 @@ fn white_facets_lose_nothing() {
     let mut wrong = Vec::new();
     for by in ["\"kulla-conty\"", "\"turquin\""] {
         let mut most = (0.0, 0.0, 0.0, 0.0);
-        for (alpha, degrees, albedo, error) in device.furnace(&compensated(by), &ALPHAS, &ANGLES) {
+        let mut found = device.furnace(&compensated(by), &ALPHAS, &ANGLES, DRAWN);
+        found.extend(device.furnace(&compensated(by), &[SMOOTH], &ANGLES, DRAWN_FOR_SMOOTH));
+        for (alpha, degrees, albedo, error) in found {
             let off = (albedo - 1.0).abs();
             if off > most.0 {
                 most = (off, alpha, degrees, error);
@@ -132,7 +137,7 @@ fn white_facets_lose_nothing() {
         );
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
-    let bare = device.furnace("\"microfacet\"", &[1.0], &[0.0]);
+    let bare = device.furnace("\"microfacet\"", &[1.0], &[0.0], DRAWN);
     assert!((bare[0].2 - (1.0 - 2_f64.ln())).abs() < 0.01, "{bare:?}");
 }
 
@@ -149,15 +154,15 @@ fn other_facets_want_their_own_albedo() {
         )
     };
     let most = |recipe: &str| {
-        let found = device.furnace(recipe, &[0.03, 0.3, 1.0], &[0.0, 60.0, 85.0]);
+        let found = device.furnace(recipe, &[0.03, 0.3, 1.0], &[0.0, 60.0, 85.0], DRAWN);
         found.into_iter().map(|(_, _, albedo, _)| (albedo - 1.0).abs()).fold(0.0, f64::max)
     };
     let borrowed = most(&beckmann("\"albedo/ggx\""));
     let own = most(&beckmann(
-        "(module: \"integrated\", fill: {\"ndf\": \"beckmann\", \"masking\": \"smith-beckmann\"}, freeze: {\"samples\": 256})",
+        "(module: \"integrated\", fill: {\"ndf\": \"beckmann\", \"masking\": \"smith-beckmann\"}, freeze: {\"samples\": 1024})",
     ));
     println!("beckmann with the albedo of ggx {borrowed:.3}, with its own {own:.4}");
-    assert!(own < 0.01 && borrowed > 2.0 * own, "{borrowed} {own}");
+    assert!(own < 0.015 && borrowed > 0.25, "{borrowed} {own}");
 }
 
 /// Catches a lobe that is not the same both ways, to the fifth digit.

@@ -6,6 +6,7 @@ use clap::Args;
 use indexmap::IndexMap;
 use shadewright::compiler::Report;
 use shadewright::compiler::diagnostics::{Diagnostic, codes};
+use shadewright::report::proofs::{self, Bench, Effort};
 use shadewright::report::{self, Baseline, Done, MeasureError, ReportError, fit};
 use shadewright::runtime::gpu::Gpu;
 use shadewright::runtime::measured::Measured;
@@ -26,6 +27,10 @@ Equal on every machine: errors of the evaluator, operations counted in the linke
 `shadewright report --accept spec/baseline.json --markdown spec/errors.md` makes this page and the baseline that a test compares with.
 
 ";
+
+/// Samples of a chi-square test of `--properties`, and with `--quick`.
+const SAMPLES: usize = 1_000_000;
+const SAMPLES_QUICK: usize = 30_000;
 
 /// Options of `report`.
 #[derive(Args)]
@@ -54,11 +59,17 @@ pub struct Options {
     /// Writes the baseline that --check compares with
     #[arg(long, value_name = "FILE", conflicts_with = "categories")]
     accept: Option<PathBuf>,
+    /// Holds what manifests claim against the device instead, and writes the worst case of each property in Markdown. Nothing else is reported
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["accept", "check", "markdown", "measured", "no_device", "categories"])]
+    properties: Option<PathBuf>,
 }
 
 /// # Errors
 /// An experiment is wrong, an alternative cannot be measured, there is no GPU, or something is worse than the baseline.
 pub fn run(context: &Context, options: &Options) -> Result<(), Failure> {
+    if let Some(path) = &options.properties {
+        return properties(context, path, options.quick);
+    }
     if let Some(path) = &options.measured {
         let report = fitted(context, path, options)?;
         return write(context, report, options);
@@ -155,14 +166,79 @@ fn write(context: &Context, mut report: report::Report, options: &Options) -> Re
     }
 }
 
-fn failure(error: ReportError, options: &Options) -> Failure {
+/// What is claimed, measured.
+fn properties(context: &Context, path: &Path, quick: bool) -> Result<(), Failure> {
+    let roles = proofs::load(&*context.library, &context.catalog)?;
+    let gpu = Gpu::headless()?;
+    let bench = Bench::new(&context.catalog, Some(&gpu));
+    let watch = Watch::new(1, "modules");
+    let effort = Effort {
+        samples: if quick { SAMPLES_QUICK } else { SAMPLES },
+        others: true,
+        modules: &|_| true,
+        cancel: watch.cancel(),
+        progress: &|done, of, next| watch.at(done, of, next),
+    };
+    let measured = proofs::prove(&bench, &roles, &effort).and_then(|found| {
+        let mut combined = Vec::new();
+        for role in &roles {
+            for name in &role.declared.combinations {
+                combined.push(proofs::combinations(&bench, role, name, &effort)?);
+            }
+        }
+        Ok((found, combined))
+    });
+    watch.finish();
+    let (found, combined) = measured.map_err(|error| measure_failure(error, "nothing is written".to_owned()))?;
+    let mut outputs = Outputs::default();
+    let page = report::write::proofs(&bench.device(), effort.samples, &found, &combined);
+    outputs.stage(path, page.as_bytes())?;
+    outputs.commit()?;
+    let broken: Vec<&proofs::Proof> = found.iter().filter(|proof| proof.is_broken()).collect();
+    let faults: Vec<&String> = combined.iter().flat_map(|c| &c.faults).collect();
+    if context.format == Format::Json {
+        say_json(&serde_json::json!({"device": bench.device(), "proofs": found, "combinations": combined}))?;
+    } else {
+        let line = |p: &&proofs::Proof| {
+            format!(
+                "broken: {}: {:?}: {:e}, bound {:e}, {}",
+                p.module, p.property, p.worst, p.bound, p.at
+            )
+        };
+        let mut lines: Vec<String> = broken.iter().map(line).collect();
+        lines.extend(faults.iter().map(|fault| format!("broken: {fault}")));
+        lines.push(format!(
+            "{} properties measured, {} broken: {}",
+            found.len(),
+            lines.len(),
+            path.display()
+        ));
+        say(&lines.join("\n"))?;
+    }
+    if broken.is_empty() && faults.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Said)
+    }
+}
+
+fn measure_failure(error: MeasureError, kept: String) -> Failure {
     match error {
-        ReportError::Measure(MeasureError::Interrupted) => Failure::Interrupted(format!(
-            "what was measured is kept in {}; the same command goes on from there",
-            options.output.join(DONE).display()
-        )),
-        ReportError::Measure(MeasureError::Compile(report)) => report.into(),
-        ReportError::Measure(MeasureError::Runtime(error)) => error.into(),
+        MeasureError::Interrupted => Failure::Interrupted(kept),
+        MeasureError::Compile(report) => report.into(),
+        MeasureError::Runtime(error) => error.into(),
+        other => Failure::message(other.to_string()),
+    }
+}
+
+fn failure(error: ReportError, options: &Options) -> Failure {
+    let folder = options.output.join(DONE);
+    let kept = format!(
+        "what was measured is kept in {}; the same command goes on from there",
+        folder.display()
+    );
+    match error {
+        ReportError::Measure(error) => measure_failure(error, kept),
         other => Failure::message(other.to_string()),
     }
 }

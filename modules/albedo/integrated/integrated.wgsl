@@ -18,10 +18,9 @@ fn lattice(i: u32) -> vec2f {
     return fract(0.5 + vec2f(0.7548776662, 0.5698402910) * f32(i));
 }
 
-/// A, B and the lost share from the sums over all samples.
-fn share(sum: vec2f) -> vec3f {
-    let mean = sum / f32(params.samples);
-    return vec3f(mean.x - mean.y, mean.y, 1.0 - mean.x);
+/// A, B and the lost share from the lost share and B.
+fn parts(found: vec2f) -> vec3f {
+    return vec3f(1.0 - found.x - found.y, found.y, found.x);
 }
 
 /// The direction at this cosine to the normal. 1e-6 is nearer to the horizon than unit vectors can be told from it.
@@ -30,21 +29,25 @@ fn toward(s: Surface, cosine: f32) -> vec3f {
     return frame_of(s.normal) * vec3f(sqrt(max(1.0 - m * m, 0.0)), 0.0, m);
 }
 
+/// What each facet loses is summed, not what it sends out: that is 1 but for little where the surface is smooth.
 fn facet_albedo(s: Surface, cosine: f32) -> vec3f {
     let v = toward(s, cosine);
     var sum = vec2f(0.0);
     for (var i = 0u; i < params.samples; i++) {
-        sum += seen(s, v, lattice(i));
+        let sent = seen(s, v, lattice(i));
+        sum += vec2f(1.0 - sent.x, sent.y);
     }
-    return share(sum);
+    return parts(sum / f32(params.samples));
 }
 
-/// Directions by the cosine's density beside the facets: its square is uniform.
+/// Cosines are the fourth powers of even steps, so that all decades count: smooth facets lose most where the cosine is about alpha. The weight is 2 m dm.
 fn facet_albedo_mean(s: Surface) -> vec3f {
     var sum = vec2f(0.0);
     for (var i = 0u; i < params.samples; i++) {
-        let v = toward(s, sqrt((f32(i) + 0.5) / f32(params.samples)));
-        sum += seen(s, v, lattice(i));
+        let x = (f32(i) + 0.5) / f32(params.samples);
+        let x2 = x * x;
+        let sent = seen(s, toward(s, x2 * x2), lattice(i));
+        sum += vec2f(1.0 - sent.x, sent.y) * (8.0 * x2 * x2 * x2 * x);
     }
-    return share(sum);
+    return parts(sum / f32(params.samples));
 }

@@ -6,10 +6,12 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     // Opposite directions, both at the horizon, have no half vector; any will do, the normal is as good.
     let h = unit_or(v + l, s.normal);
     let facets = distribution(s, h) * masking(s, v, l, h);
+    // v.h and l.h, which are the same half length but differ where rounded directions at the horizon leave them no digits.
+    let cosine = 0.5 * length(v + l);
     if params.compensated {
-        return compensate(s, v, l, fresnel(s, dot(v, h)) * facets) + diffuse(s, v, l);
+        return compensate(s, v, l, fresnel(s, cosine) * facets) + diffuse(s, v, l);
     }
-    return fresnel(s, dot(v, h)) * facets + diffuse(s, v, l);
+    return fresnel(s, cosine) * facets + diffuse(s, v, l);
 }
 
 /// Share of the samples that facets draw, the others the diffuse part: by how much they reflect, seen from v.

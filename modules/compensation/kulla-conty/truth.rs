@@ -14,7 +14,7 @@ const PANELS: usize = 4;
 fn compensate(at: &At) -> Vec<f64> {
     let (alpha, normal) = (at.number("s.alpha"), at.vector("s.normal"));
     let lost = |toward: &str| ggx(alpha, angle(normal, at.vector(toward)).cos().max(0.0), PANELS).lost;
-    let mean = ggx_mean(alpha, PANELS).lost;
+    let mean = ggx_mean(alpha, 2).lost;
     let lobe = lost("v") * lost("l") / (PI * mean);
     let (single, f0) = (at.vector("single"), at.vector("s.f0"));
     let channel = |i: usize| single[i] + f0[i] * f0[i] * (1.0 - mean) / (1.0 - f0[i] * mean) * lobe;

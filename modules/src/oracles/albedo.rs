@@ -2,6 +2,9 @@
 //!
 //! Only additions, multiplications, divisions and roots: equal bits on every machine, so that tables can be compared byte by byte.
 
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
 use super::quadrature::nodes;
 
 /// What facets do with light from a direction, if they reflect all or a share (1 - v.h)^5 of it.
@@ -137,7 +140,20 @@ pub fn ggx(alpha: f64, cosine: f64, panels: usize) -> Albedo {
 }
 
 /// The mean over directions, weighted with the cosine: twice the integral of the albedo times the cosine.
+///
+/// What was asked for is remembered: a mean is a hundred integrals, and reports ask for few widths often.
 pub fn ggx_mean(alpha: f64, panels: usize) -> Albedo {
+    static KNOWN: Mutex<BTreeMap<(u64, usize), Albedo>> = Mutex::new(BTreeMap::new());
+    let key = (alpha.to_bits(), panels);
+    if let Some(known) = KNOWN.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+        return *known;
+    }
+    let made = integrate_mean(alpha, panels);
+    KNOWN.lock().unwrap_or_else(PoisonError::into_inner).insert(key, made);
+    made
+}
+
+fn integrate_mean(alpha: f64, panels: usize) -> Albedo {
     let (mut lost, mut grazing) = (0.0, 0.0);
     for (x, weight) in nodes(0.0, 1.0, 3 * panels) {
         // All decades of the cosine count, from alpha on.

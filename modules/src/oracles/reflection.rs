@@ -97,5 +97,6 @@ pub fn microfacet(s: &Surface, v: DVec3, l: DVec3) -> f64 {
     }
     let h = v + l;
     let d = ggx_d(s.alpha, angle(s.normal, h));
-    schlick(s.f0, angle(v, h).cos()) * d * ggx_v_correlated(s.alpha, s.normal, v, l) + lambert(s.diffuse)
+    // Half the angle between the directions, the same from either, whatever their rounding makes of h.
+    schlick(s.f0, (angle(v, l) / 2.0).cos()) * d * ggx_v_correlated(s.alpha, s.normal, v, l) + lambert(s.diffuse)
 }

@@ -193,10 +193,33 @@ fn wrong_declarations_are_told_where_they_stand() {
         Ok(_) => panic!("{text} is taken"),
         Err(report) => report.render().trim().to_owned(),
     };
-    let found = error("(function: \"bdrf\", view: \"v\", light: \"l\", free: {})");
-    assert_eq!(found, "FUNCTION", "{found}");
-    let found = error("(function: \"brdf\", view: \"v\", light: \"s\", free: {\"s.alhpa\": (0.0, 1.0), \"s.f0\": (1.0, 0.0)})");
-    assert_eq!(found, "MEMBERS", "{found}");
+    let at = |message: &str, text: &str, (column, length): (usize, usize), label: &str| {
+        let (space, mark) = (" ".repeat(column - 1), "^".repeat(length));
+        format!("error[SW1105]: {message}\n  --> brdf/brdf.fit.ron:1:{column}\n  |\n1 | {text}\n  | {space}{mark} {label}")
+    };
+    let text = "(function: \"bdrf\", view: \"v\", light: \"l\", free: {})";
+    let told = at("`brdf` has no function `bdrf`", text, (12, 6), "no such function");
+    let functions = "\n  |\n  = did you mean `brdf`?\n  = functions: brdf, brdf_sample, brdf_pdf";
+    assert_eq!(error(text), format!("{told}{functions}"));
+    let text = "(function: \"brdf\", view: \"v\", light: \"s\", free: {})";
+    let told = at("`brdf` has no argument `s` with three numbers", text, (38, 3), "a direction is one");
+    assert_eq!(error(text), told);
+    let text = "(function: \"brdf\", view: \"v\", light: \"l\", free: {\"s.alhpa\": (0.0, 1.0)})";
+    let told = at(
+        "`brdf` has no floats at `s.alhpa`",
+        text,
+        (61, 10),
+        "an argument's member, such as `s.alpha`",
+    );
+    assert_eq!(error(text), told);
+    let text = "(function: \"brdf\", view: \"v\", light: \"l\", free: {\"s.f0\": (1.0, 0.0)})";
+    let told = at(
+        "the range of `s.f0` holds nothing",
+        text,
+        (58, 10),
+        "the least value, then the largest",
+    );
+    assert_eq!(error(text), told);
 }
 
 /// Catches a page that loses the fits, is no XML with them, or speaks of experiments that were not asked for.
@@ -223,7 +246,7 @@ fn the_page_shows_the_fits() {
     for said in [
         "Best fits to a table",
         "lambert",
-        "s.diffuse (0.5, 0.5, 0.5)",
+        "s.diffuse (0.500, 0.500, 0.500)",
         "<none>: because",
         "phong",
     ] {

@@ -110,7 +110,8 @@ impl Probe {
             let buffer = |usage, bytes: Option<&Vec<u8>>| gpu.buffer(&binding.name, usage, bytes.map_or(&[], |b| b), 0);
             Ok(match &binding.fill {
                 _ if is_host(binding, INPUT) => {
-                    let bytes: Vec<u8> = rows.iter().flat_map(|row| table.row(*row)).copied().collect();
+                    let mut bytes = Vec::with_capacity(rows.len() * table.row(0).len());
+                    rows.iter().for_each(|row| bytes.extend_from_slice(table.row(*row)));
                     Bound::Buffer(buffer(U::STORAGE, Some(&bytes))?)
                 }
                 _ if is_host(binding, OUTPUT) => Bound::Buffer(results.clone()),

@@ -157,6 +157,16 @@ impl Probe {
         )?)
     }
 
+    /// Packs rows that differ from one row in some numbers only, each of which is a column: `s.alpha`, `v.x`, named as in
+    /// [`Probe::components`]. Where rows of JSON take longer than what is done with them.
+    ///
+    /// # Errors
+    /// The row does not fit, no argument has a number of a column's name that is an f32, or columns differ in length.
+    pub fn varied(&self, row: &Json, columns: &[(&str, &[f32])]) -> Result<Table, RuntimeError> {
+        let numbers = self.arguments.as_ref().map(numbers).unwrap_or_default();
+        Ok(self.table(std::slice::from_ref(row))?.varied(&numbers, columns)?)
+    }
+
     /// Results of a table as `probe` gives them: `{"function", "device", "results"}`, the results in the order of the rows, in the form that
     /// inputs have.
     ///

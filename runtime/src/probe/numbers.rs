@@ -26,6 +26,20 @@ impl Number {
     }
 }
 
+impl Number {
+    /// Writes an f32 into the bytes of the value; whether there is one.
+    pub fn write(&self, bytes: &mut [u8], value: f32) -> bool {
+        let place = bytes.get_mut(self.offset..).and_then(|rest| rest.first_chunk_mut::<4>());
+        match place {
+            Some(place) if self.scalar == Scalar::F32 => {
+                *place = value.to_le_bytes();
+                true
+            }
+            _ => false,
+        }
+    }
+}
+
 /// All numbers of a value, in the order of its declaration.
 pub(super) fn numbers(layout: &Layout) -> Vec<Number> {
     let mut found = Vec::new();

@@ -8,6 +8,7 @@ use shadewright_compiler::catalog::Catalog;
 use shadewright_compiler::manifest::Value;
 use shadewright_compiler::reflect::{BindingType, Fill, Layout, ParamPlace, ParamUse, Reflection};
 
+use super::numbers::Number;
 use crate::gpu::DataError;
 use crate::gpu::pack::{Defaults, pack, unknown};
 use crate::gpu::pipeline::Constants;
@@ -44,6 +45,33 @@ impl Table {
     /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len == 0
+    }
+
+    /// As many rows as the columns are long, each like the first but for the columns' numbers.
+    ///
+    /// # Errors
+    /// No number has a column's name, or columns differ in length.
+    pub(super) fn varied(mut self, numbers: &[Number], columns: &[(&str, &[f32])]) -> Result<Self, DataError> {
+        self.len = columns.first().map_or(1, |(_, column)| column.len());
+        let first = std::mem::take(&mut self.bytes);
+        self.bytes = first.repeat(self.len);
+        for &(name, column) in columns {
+            let Some(number) = numbers.iter().find(|number| number.name == name) else {
+                return Err(unknown(name, "number", "a row", numbers.iter().map(|n| n.name.as_str()), name));
+            };
+            if column.len() != self.len {
+                return Err(DataError::new(name, format!("{} numbers, others have {}", column.len(), self.len)));
+            }
+            for (row, value) in self.bytes.chunks_mut(self.stride.max(1)).zip(column) {
+                if !number.write(row, *value) {
+                    return Err(DataError::new(name, "is no f32"));
+                }
+            }
+        }
+        for batch in &mut self.batches {
+            batch.rows = (0..self.len).collect();
+        }
+        Ok(self)
     }
 
     /// A row's arguments: the bytes of its element in the input buffer. Empty where the function reads no argument, or there is no such row.

@@ -60,6 +60,35 @@ fn rows_come_back_in_order() {
     assert_eq!(Json::Array(run(&rows).unwrap()), expected);
 }
 
+/// Catches a column at another number's place, rows that do not get the common row, and a column that nothing takes.
+#[test]
+fn columns_are_rows() {
+    let catalog = catalog(&[
+        ("tested/category.ron", CATEGORY),
+        ("tested/interface.wgsl", INTERFACE),
+        ("tested/lamp/module.ron", MANIFEST),
+        ("tested/lamp/lamp.wgsl", SOURCE),
+    ]);
+    let probe = Probe::new(&catalog, &Recipe::parse("test", "\"lamp\"").unwrap(), "eval").unwrap();
+    let row = json!({"s": {"n": [2, 4, 8]}, "v": [0, 0, 1], "k": 3, "params": {"scale": 2}});
+    let (alpha, z) = ([0.5, 1.0, 2.0], [1.0, 2.0, 4.0]);
+    let table = probe.varied(&row, &[("s.alpha", &alpha), ("v.z", &z)]).unwrap();
+    let rows: Vec<Json> = alpha
+        .iter()
+        .zip(z)
+        .map(|(alpha, z)| json!({"s": {"n": [2, 4, 8], "alpha": alpha}, "v": [0, 0, z], "k": 3, "params": {"scale": 2}}))
+        .collect();
+    assert_eq!(table, probe.table(&rows).unwrap());
+    for (columns, message) in [
+        (vec![("s.beta", &alpha[..])], "s.beta"),
+        (vec![("k", &alpha[..])], "k: is no f32"),
+        (vec![("s.alpha", &alpha[..]), ("v.z", &z[..2])], "v.z: 2 numbers, others have 3"),
+    ] {
+        let error = probe.varied(&row, &columns).expect_err("it does not fit").to_string();
+        assert!(error.contains(message), "{error}");
+    }
+}
+
 /// Catches the table being looked for at fixed bindings: parameters of a category of group 3 come before it.
 #[test]
 fn the_table_shares_its_group() {

@@ -10,8 +10,11 @@ use shadewright_runtime::probe::Probe;
 use super::{Subject, Variables, unfit};
 use crate::data::{Executed, FitErrors};
 use crate::experiment::Metric;
-use crate::measure::{MeasureError, executed, statistics};
+use crate::measure::{MeasureError, Random, executed, latin, statistics};
 
+/// Points and samples that tell what is read from what is not.
+const POINTS: usize = 4;
+const FEW: usize = 64;
 /// What a value that is not finite differs by: far more than any that is.
 const LOST: f64 = 1e6;
 
@@ -51,12 +54,20 @@ impl Comparison {
             read.map(|(name, direction)| (name.clone(), json!(direction.to_array()))).collect()
         };
         let metric = |sample: &Sample| (sample.l.z, sample.value.map(|f| compressed(f, sample.l.z)));
-        Ok(Self {
+        let mut comparison = Self {
             variables: Variables::of(subject, &probe),
             rows: samples.iter().map(row).collect(),
             measured: samples.iter().map(metric).collect(),
             probe,
-        })
+        };
+        // A linked function has the whole struct, whatever it reads of it.
+        let mut variables = comparison.variables.clone();
+        let points = latin(variables.len(), POINTS, &mut Random::new(2, 0));
+        variables.drop_unread(&points, |a, b| {
+            Ok::<bool, MeasureError>(comparison.differences(a, FEW)? == comparison.differences(b, FEW)?)
+        })?;
+        comparison.variables = variables;
+        Ok(comparison)
     }
 
     /// Values of the model at its first samples, by sample and channel in the metric, and what they executed.

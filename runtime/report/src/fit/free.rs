@@ -77,7 +77,6 @@ impl Variables {
             }
         }
         let reflection = probe.program().reflection();
-        let root = reflection.instances.first().map_or("", |instance| instance.name.as_str());
         for param in &reflection.params {
             let components = match param.ty {
                 ParamType::F32 => 1,
@@ -90,8 +89,9 @@ impl Variables {
                 continue;
             };
             let key = format!("{}.{}", param.instance, param.name);
+            let is_unique = reflection.params.iter().filter(|other| other.name == param.name).count() == 1;
             let mut variable = Variable {
-                name: if param.instance == root { param.name.clone() } else { key.clone() },
+                name: if is_unique { param.name.clone() } else { key.clone() },
                 place: Place::Param(key),
                 components,
                 low,
@@ -109,6 +109,30 @@ impl Variables {
     /// Free numbers.
     pub fn len(&self) -> usize {
         self.0.iter().map(|variable| variable.components).sum()
+    }
+
+    /// Drops what is not read: those that may have any value and change nothing. `is_same` says whether two points do.
+    ///
+    /// # Errors
+    /// Those of `is_same`.
+    pub fn drop_unread<E>(&mut self, points: &[Vec<f64>], mut is_same: impl FnMut(&[f64], &[f64]) -> Result<bool, E>) -> Result<(), E> {
+        let mut first = 0;
+        let mut kept = Vec::new();
+        for variable in &self.0 {
+            let own = first..first + variable.components;
+            first = own.end;
+            let mut is_read = false;
+            for point in points {
+                let mut pair = [point.clone(), point.clone()];
+                pair[0][own.clone()].fill(0.3);
+                pair[1][own.clone()].fill(0.7);
+                is_read = is_read || !is_same(&pair[0], &pair[1])?;
+            }
+            kept.push(is_read);
+        }
+        let mut kept = kept.into_iter();
+        self.0.retain(|_| kept.next().unwrap_or(true));
+        Ok(())
     }
 
     /// Where the search begins: parameters as they are by default, all else in the middle of its range.

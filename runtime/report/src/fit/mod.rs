@@ -178,7 +178,7 @@ pub fn fit(
             // Who names a model wants to know why it has none.
             Err(error) if !is_all => return Err(error),
             Err(error) => {
-                fits.without.insert(label.clone(), error.to_string());
+                fits.without.insert(label.clone(), error.to_string().trim().to_owned());
             }
         }
     }

@@ -109,7 +109,7 @@ fn costs_of(rows: &[Row]) -> String {
 }
 
 /// A text that stays in its cell, and says only what it says: no HTML, no links, no emphasis.
-fn cell(text: &str) -> String {
+pub(super) fn cell(text: &str) -> String {
     let mut safe = String::new();
     for letter in clean(text).chars() {
         if matches!(letter, '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' | '&') {

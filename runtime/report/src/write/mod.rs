@@ -5,6 +5,7 @@
 mod faults;
 mod markdown;
 mod number;
+mod proofs;
 mod sheet;
 mod text;
 
@@ -17,6 +18,7 @@ pub use drawing::pareto::dominated;
 pub use faults::{Fault, Kind, faults};
 pub use markdown::markdown;
 pub use number::number;
+pub use proofs::proofs;
 pub use sheet::{Tile, sheet, sheet_size};
 pub use text::{parameters, replay};
 
