@@ -142,4 +142,8 @@ impl shadewright::compiler::Library for Fewer {
     fn read(&self, path: &str) -> Result<Option<String>, String> {
         library().read(path)
     }
+
+    fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, String> {
+        library().bytes(path)
+    }
 }

@@ -34,10 +34,10 @@ fn library() -> tempfile::TempDir {
 fn tables_are_written() {
     let folder = tempfile::tempdir().unwrap();
     let (kept, made) = (folder.path().join("kept.f32"), folder.path().join("made.f32"));
-    good(&["table", "albedo/ggx", "albedo", "-o", kept.to_str().unwrap()]);
-    good(&["table", "albedo/ggx", "albedo", "--make", "-o", made.to_str().unwrap()]);
+    good(&["table", "albedo/tabulated", "albedo", "-o", kept.to_str().unwrap()]);
+    good(&["table", "albedo/tabulated", "albedo", "--make", "-o", made.to_str().unwrap()]);
     let bytes = fs::read(&kept).unwrap();
-    let own = concat!(env!("CARGO_MANIFEST_DIR"), "/modules/albedo/ggx/albedo.f32");
+    let own = concat!(env!("CARGO_MANIFEST_DIR"), "/modules/albedo/tabulated/albedo.f32");
     assert_eq!(bytes, fs::read(own).unwrap());
     assert_eq!(bytes, fs::read(&made).unwrap());
 }

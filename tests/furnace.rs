@@ -157,7 +157,7 @@ fn other_facets_want_their_own_albedo() {
         let found = device.furnace(recipe, &[0.03, 0.3, 1.0], &[0.0, 60.0, 85.0], DRAWN);
         found.into_iter().map(|(_, _, albedo, _)| (albedo - 1.0).abs()).fold(0.0, f64::max)
     };
-    let borrowed = most(&beckmann("\"albedo/ggx\""));
+    let borrowed = most(&beckmann("\"albedo/tabulated\""));
     let own = most(&beckmann(
         "(module: \"integrated\", fill: {\"ndf\": \"beckmann\", \"masking\": \"smith-beckmann\"}, freeze: {\"samples\": 1024})",
     ));

@@ -28,6 +28,9 @@ impl Library for Edited {
             None => shadewright_modules::library().read(path),
         }
     }
+    fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, String> {
+        shadewright_modules::library().bytes(path)
+    }
 }
 
 fn forward() -> Recipe {

@@ -150,6 +150,10 @@ impl Library for Panics {
         }
         self.0.read(path)
     }
+
+    fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, String> {
+        self.0.bytes(path)
+    }
 }
 
 /// Catches a panic in the background that takes the frame along, hangs whoever waits, or leaves locks that nobody gets past.

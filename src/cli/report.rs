@@ -156,8 +156,13 @@ fn write(context: &Context, mut report: report::Report, options: &Options) -> Re
             outputs.stage(&path, &bytes)?;
         }
     }
+    let head = if report.fits.is_empty() {
+        HEAD
+    } else {
+        "# Models and measured reflectance\n\n"
+    };
     if let Some(path) = &options.markdown {
-        outputs.stage(path, format!("{HEAD}{}", report::write::markdown(&report)).as_bytes())?;
+        outputs.stage(path, format!("{head}{}", report::write::markdown(&report)).as_bytes())?;
     }
     outputs.commit()?;
     match context.format {

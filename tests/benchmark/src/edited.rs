@@ -41,4 +41,8 @@ impl Library for Edited {
         let number = self.edits.load(Ordering::Relaxed);
         Ok(text.map(|text| format!("{text}\n// Edit {number}.\n")))
     }
+
+    fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, String> {
+        self.standard.bytes(path)
+    }
 }
