@@ -149,7 +149,7 @@ fn bad_files_are_located() {
     assert_eq!(
         said("bad.ies"),
         "error[SW0907]: the file `bad.ies` cannot be used
-  --> a.scene.ron:3:55
+  --> a.scene.ron:3:53
   |
 3 | lights: [(module: \"photometric\", files: {\"profile\": \"bad.ies\"})])
   |                                                     ^^^^^^^^^ line 6: a vertical angle is 45, but the one before is 90
