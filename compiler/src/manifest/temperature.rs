@@ -112,6 +112,6 @@ mod tests {
         near(daylight(6504.0).unwrap(), [1.0; 3], 1e-3);
         near(daylight(5003.0).unwrap(), of(0.345_67, 0.358_50), 1e-3);
         near(daylight(7504.0).unwrap(), of(0.299_02, 0.314_85), 1e-3);
-        near(daylight(7000.0).unwrap(), daylight(7000.000_1).unwrap(), 5e-4);
+        near(daylight(7000.0).unwrap(), daylight(7_000.000_1).unwrap(), 5e-4);
     }
 }

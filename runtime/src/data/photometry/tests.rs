@@ -67,17 +67,17 @@ fn flux_of_a_cosine() {
     near(read(&fine).flux(), 1000.0 * PI, 1e-4);
     let coarse = ies("IESNA:LM-63-2002", 1, &steps(0.0, 90.0, 5.0), &[0.0], |v, _| cosine(v));
     // Linear between steps of 5 degrees.
-    near(read(&coarse).flux(), 3139.597_4, 1e-7);
+    near(read(&coarse).flux(), 3_139.597_4, 1e-7);
     assert_eq!(read(&coarse).lamps, Some(1000.0));
     let scaled = coarse.replace("2 500 1 ", "1 -1 3 ").replace("1 1 100\n", "0.5 2 100\n");
-    near(read(&scaled).flux(), 1.5 * 3139.597_4, 1e-7);
+    near(read(&scaled).flux(), 1.5 * 3_139.597_4, 1e-7);
     assert_eq!(read(&scaled).lamps, None);
     // Before 1995 the second factor counts.
-    near(read(&scaled.replace("IESNA:LM-63-2002", "IESNA91")).flux(), 3.0 * 3139.597_4, 1e-7);
-    near(read(&scaled.replace("IESNA:LM-63-2002\n", "")).flux(), 3.0 * 3139.597_4, 1e-7);
+    near(read(&scaled.replace("IESNA:LM-63-2002", "IESNA91")).flux(), 3.0 * 3_139.597_4, 1e-7);
+    near(read(&scaled.replace("IESNA:LM-63-2002\n", "")).flux(), 3.0 * 3_139.597_4, 1e-7);
     near(
         read(&scaled.replace("IESNA:LM-63-2002", "IES:LM-63-2019")).flux(),
-        1.5 * 3139.597_4,
+        1.5 * 3_139.597_4,
         1e-7,
     );
 }
