@@ -2,6 +2,8 @@
 //!
 //! A decoder turns the bytes of a format into 32-bit floats. [`FORMATS`] is the list of them; a module's manifest names one.
 
+pub mod photometry;
+
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
@@ -32,6 +34,7 @@ pub const FORMATS: &[(&str, Decoder)] = &[
     ("rgl", |bytes| {
         Rgl::read(bytes).map(|table| table.floats()).map_err(|why| why.to_string())
     }),
+    ("photometry", photometry::decode),
 ];
 
 /// Why bytes are no numbers.
