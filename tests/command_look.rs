@@ -85,7 +85,8 @@ brdf/microfacet
 ├─ ndf: ndf/ggx (default)
 ├─ masking: masking/smith-ggx-correlated (default)
 ├─ fresnel: fresnel/schlick
-└─ diffuse: diffuse/lambertian (default)
+├─ diffuse: diffuse/lambertian (default)
+└─ compensation: (empty)
 ";
     assert_eq!(good(&["graph", recipe]).text(), expected);
     let json = good(&["graph", recipe, "--format", "json"]).json();

@@ -226,10 +226,15 @@ const HOMONYMS: &[(&str, &str, &str)] = &[
     ("runtime/src", "display", "the scene's field, and the frame's image"),
     ("runtime/src", "forward", "a member of the interface's struct for views"),
     ("runtime/src", "perspective", "a member of the same"),
+    ("runtime/src", "none", "in messages: nothing is there"),
     ("runtime/src", "merl", "a format of files"),
     ("runtime/src", "rgl", "a format of files"),
     ("runtime/report/src", "hard", "a field of experiments"),
     ("runtime/report/src", "light", "a colour of the page's theme"),
+    ("runtime/report/src", "diffuse", "a member of the interface's surface"),
+    ("runtime/report/src", "normal", "a member of the same"),
+    ("runtime/report/src", "masking", "a field of `*.proofs.ron`"),
+    ("runtime/report/src", "albedo", "the heading of a column"),
 ];
 
 /// Catches a compiler that knows a category or module by its name instead of by what it declares, and a runtime that knows a module.

@@ -128,6 +128,63 @@ fn light_falloff() {
     near(directional_illuminance(DVec3::new(0.0, 3.0, -4.0), 1000.0, DVec3::Z), 800.0, 1e-14);
 }
 
+/// Catches a cone measured by its whole opening, a ramp in the angle, and one that is not 0 beyond.
+#[test]
+fn spots() {
+    near(1400.0 / cone_solid_angle(deg(30.0)), 1663.12813, 1e-8);
+    near(cone_solid_angle(PI), 4.0 * PI, 1e-15);
+    let versine = |x: f64| 1.0 - deg(x).cos();
+    near(
+        cone_ramp(versine(30.0), versine(20.0), versine(40.0)),
+        (deg(30.0).cos() - deg(40.0).cos()) / (deg(20.0).cos() - deg(40.0).cos()),
+        1e-14,
+    );
+    assert_eq!(cone_ramp(versine(41.0), versine(20.0), versine(40.0)), 0.0);
+    assert_eq!(cone_ramp(0.0, 0.0, 0.0), 0.0);
+    let point = Point {
+        position: DVec3::new(0.0, 3.0, 4.0),
+        intensity: 100.0,
+        range: 0.0,
+        size: 0.01,
+    };
+    let spot = |direction| Spot {
+        point,
+        direction,
+        inner: deg(10.0),
+        outer: deg(20.0),
+    };
+    near(
+        spot_illuminance(&spot(DVec3::new(0.0, -6.0, -8.0)), DVec3::ZERO, DVec3::Z),
+        3.2,
+        1e-14,
+    );
+    assert_eq!(spot_illuminance(&spot(DVec3::NEG_Z), DVec3::ZERO, DVec3::Z), 0.0);
+    assert_eq!(spot_illuminance(&spot(DVec3::ZERO), DVec3::ZERO, DVec3::Z), 0.0);
+}
+
+/// Catches a disc that the horizon cuts in the wrong place, and a mean over slopes that is not one: Gauss-Legendre over the disc.
+#[test]
+fn discs() {
+    near(disc_cosine(DVec3::Z, DVec3::new(0.6, 0.0, 0.8), 0.1), 0.8, 1e-14);
+    // Half of a small disc above the horizon: the mean of the positive half of x over a disc of radius r is 2 r / (3 pi).
+    near(disc_cosine(DVec3::Z, DVec3::X, 1e-3), 2e-3 / (3.0 * PI), 1e-5);
+    assert_eq!(disc_cosine(DVec3::Z, DVec3::new(1.0, 0.0, -0.2), 0.1), 0.0);
+    for (alpha, slope, radius) in [(0.1, 0.0, 0.05), (0.01, 0.02, 0.03), (0.02, 0.2, 0.01)] {
+        let ggx = |square: f64| (alpha / (alpha * alpha + square)).powi(2) / PI;
+        let sum: f64 = nodes(0.0, radius, 40)
+            .iter()
+            .flat_map(|&(r, wr)| nodes(0.0, 2.0 * PI, 40).into_iter().map(move |(phi, wp)| (r, phi, wr * wp)))
+            .map(|(r, phi, w)| w * r * ggx(slope * slope + r * r + 2.0 * slope * r * phi.cos()))
+            .sum();
+        near(
+            disc_over_ggx(alpha, slope, radius, radius),
+            sum / (PI * radius * radius) / ggx(slope * slope),
+            1e-7,
+        );
+    }
+    assert!(disc_over_ggx(0.5, 3.0, 1e-5, 1e-5) - 1.0 < 1e-4);
+}
+
 #[test]
 fn exposure_and_tone() {
     near(ev100(16.0, 1.0 / 125.0, 100.0), 14.9657843, 1e-8);

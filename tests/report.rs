@@ -68,7 +68,7 @@ fn ggx(end: &str) -> String {
     format!("{head}let d = select(0.0, k * k * INV_PI, cosine > 0.0);\n    {end}\n}}\n")
 }
 
-const MANIFEST: &str = r#"(summary: "planted", uses: ["math"])"#;
+const MANIFEST: &str = r#"(summary: "planted", uses: ["lobe", "math"])"#;
 
 /// The experiment on distributions of the standard library, with GGX as the truth of all.
 fn experiment() -> String {
@@ -238,7 +238,7 @@ fn an_interrupted_report_goes_on() {
     assert!(kept.rows.borrow().is_empty());
     cancel.store(false, Ordering::Relaxed);
     let first = report_on(&plain, &["ndf"], None, &kept, &cancel).unwrap();
-    let rows = first.experiments[0].rows.len();
+    let rows = first.experiments.iter().map(|e| e.rows.len()).sum();
     assert_eq!((kept.rows.borrow().len(), kept.reused.get()), (rows, 0));
     let again = report_on(&plain, &["ndf"], None, &kept, &cancel).unwrap();
     assert_eq!((kept.reused.get(), &again), (rows, &first));

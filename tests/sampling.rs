@@ -57,7 +57,8 @@ fn one_per_cent_is_seen() {
     };
     let of_ward = |catalog: &Catalog, samples: usize| drawn(catalog, samples, &|name| name == "brdf/ward").remove(0);
 
-    let (shifted, _folder) = mutant("let share = lobe_share(", "let share = 1.01 * lobe_share(");
+    let sampled = "slope_lobe_sample(s, s.widths, lobe_share";
+    let (shifted, _folder) = mutant(sampled, "slope_lobe_sample(s, s.widths, 1.01 * lobe_share");
     let (few, many) = (of_ward(&shifted, 30_000), of_ward(&shifted, SAMPLES));
     println!(
         "1 % of the lobe: p {:.1e} with few samples, {:.1e} with many",
@@ -65,7 +66,7 @@ fn one_per_cent_is_seen() {
     );
     assert!(!few.is_broken() && many.is_broken(), "{few:?} {many:?}");
 
-    let (scaled, _folder) = mutant("return mix(cosine_pdf(", "return 0.99 * mix(cosine_pdf(");
+    let (scaled, _folder) = mutant("return slope_lobe_pdf(", "return 0.99 * slope_lobe_pdf(");
     let few = of_ward(&scaled, 30_000);
     println!("1 % of the density: p {:.1e}", few.worst);
     assert!(few.is_broken(), "{few:?}");

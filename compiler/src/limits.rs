@@ -24,6 +24,8 @@ pub const LIST_LENGTH: usize = 1024;
 pub const TREE_DEPTH: usize = 32;
 /// Most module instances of a recipe, defaults included ([`codes::TOO_MANY_INSTANCES`]).
 pub const INSTANCES: usize = 1024;
+/// Most permutations of a space that are drawn at once ([`codes::SPACE_UNCOUNTABLE`]): their numbers are all held.
+pub const DRAWN: usize = 1 << 24;
 /// Most sets of constants for which a module's parsed text is kept; the oldest goes then, and is parsed again when it is needed.
 pub const VARIANTS: usize = 64;
 /// Most forms of a function, with this or that of it dead, that are kept for the next permutation; the oldest goes then.

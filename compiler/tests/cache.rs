@@ -61,7 +61,7 @@ fn they_are_the_same_in_every_process() {
 }
 
 const PINNED_HASH: u128 = 0x7923_0bf1_428a_0c6a_b27e_3129_4d85_033b;
-const PINNED_KEY: u128 = 0xe222_2013_d12d_17e2_febd_b4c2_a985_f237;
+const PINNED_KEY: u128 = 0x2cb9_b206_4521_fc45_8854_77ba_15ac_a514;
 
 /// Catches a hash or key that depends on which thread was first, or on the order in which a file system lists folders.
 #[test]
@@ -130,7 +130,12 @@ fn a_key_changes_with_exactly_the_files_that_the_recipe_reaches() {
         let before = key(&texts, &recipe, "main");
         for path in texts.0.keys() {
             let mut edited = texts.clone();
-            edited.0.get_mut(path).unwrap().push('\n');
+            let text = edited.0.get_mut(path).unwrap();
+            // Another number, where it is a table.
+            match text.strip_prefix('\0') {
+                Some(rest) => *text = format!("\u{1}{rest}"),
+                None => text.push('\n'),
+            }
             let changed = key(&edited, &recipe, "main") != before;
             assert_eq!(changed, reached.contains(path), "{name}: {path}");
         }

@@ -423,6 +423,8 @@ fn every_code_is_asserted() {
     let mut texts = String::new();
     sources(&root.join("tests"), &mut texts);
     sources(&root.join("src"), &mut texts);
+    // Of files that recipes name, which the runtime reads.
+    sources(&root.join("../runtime/src/data"), &mut texts);
     // Of modules written in WESL, which are read there.
     sources(&root.join("../modules/src"), &mut texts);
     let codes = codes::ALL

@@ -80,7 +80,7 @@ error[SW0102]: there is no field `fil`
   |                 ^^^ unknown field
   |
   = did you mean `fill`?
-  = fields: module, fill, freeze, label
+  = fields: module, fill, freeze, files, label
 "#,
     );
 }

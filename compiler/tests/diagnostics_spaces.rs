@@ -400,6 +400,24 @@ error[SW1006]: the space has 340282366920938463463374607431768211455 permutation
     );
     assert!(space.get(0).is_none() && space.random(1, 0).is_err() && space.iter().is_err());
     assert!(space.pairwise().unwrap().iter().all(|p| p.index.is_none()));
+
+    // One that can be numbered, but not held: the numbers of all would take the machine's memory.
+    let of = vec!["\"plain\""; 40].join(", ");
+    let text = format!("(\n    module: \"run\",\n    fill: {{\"value\": (module: \"sum\", fill: {{\"all\": (some_of: [{of}])}})}},\n)\n");
+    let space = Space::parse(&library().catalog().unwrap(), "a.space.ron", &text).unwrap_or_else(|report| panic!("{report}"));
+    assert_text(
+        &space.random(usize::MAX, 0).unwrap_err().render(),
+        r#"
+error[SW1006]: 1099511627776 permutations are more than are drawn at once
+  --> a.space.ron:2:13
+  |
+2 |     module: "run",
+  |             ^^^^^ of this
+  |
+  = at most 16777216 are drawn; all can be walked through
+"#,
+    );
+    assert_eq!(space.random(3, 0).unwrap().len(), 3);
 }
 
 #[test]

@@ -233,7 +233,9 @@ fn of_frozen_parameters() {
         let name = format!("{}/{}", module.category, module.name);
         let plain = alone(&catalog, &name);
         let mut frozen = plain.clone();
-        for (param, declared) in &module.manifest.params {
+        // What the linker fills in is a constant as it is.
+        let free = |role: &Option<String>| !role.as_ref().is_some_and(|role| role.starts_with("filled:"));
+        for (param, declared) in module.manifest.params.iter().filter(|(_, p)| free(&p.role)) {
             frozen.freeze.insert(param.clone(), declared.default.clone());
         }
         for function in catalog.functions(&module.category).unwrap().keys() {

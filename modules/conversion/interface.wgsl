@@ -7,6 +7,11 @@ fn alpha_of_roughness(roughness: f32) -> f32 {
     return max(roughness * roughness, MIN_ALPHA);
 }
 
+/// Perceptual roughness, from the width of a lobe: its root.
+fn roughness_of_alpha(alpha: f32) -> f32 {
+    return sqrt(alpha);
+}
+
 /// Perceptual roughness from glossiness: 1 - glossiness (Khronos Group 2017, KHR_materials_pbrSpecularGlossiness).
 fn roughness_of_glossiness(glossiness: f32) -> f32 {
     return 1.0 - glossiness;

@@ -151,6 +151,42 @@ fn a_lamp_in_a_room_casts_on_all_walls() {
     assert!(counts.iter().all(|[dark, lit]| *dark > 100 && *lit > 10_000), "{counts:?}");
 }
 
+/// Two boxes above the ground.
+const ABOVE_GROUND: [Caster; 2] = [
+    Caster {
+        center: DVec3::new(1.0, 1.5, 0.5),
+        half: DVec3::new(0.5, 0.25, 0.75),
+    },
+    Caster {
+        center: DVec3::new(-1.5, 0.7, -1.0),
+        half: DVec3::new(0.3, 0.7, 0.4),
+    },
+];
+
+/// Counts dark and lit pixels of the ground under the boxes in this light, where the camera sees points that count.
+fn shadows_on_the_ground(light: &str, ray: impl Fn(DVec3) -> DVec3, counts: impl Fn(DVec3) -> bool) -> [usize; 2] {
+    let objects: String = ABOVE_GROUND.iter().enumerate().map(|(i, c)| c.object(i)).collect();
+    let meshes: String = ABOVE_GROUND.iter().enumerate().map(|(i, c)| c.mesh(i)).collect();
+    let file = parse(&format!(
+        r#"(
+            camera: (eye: (0, 9, 3), target: (0, 0, 0), fov: 50), size: (160, 128), pass: "forward",
+            meshes: {{"ground": Plane(size: (10, 10)), {meshes}}},
+            materials: {{"matte": {{"material": (module: "metalness", params: {{"base_color": (0.5, 0.5, 0.5)}}), "brdf": "lambert"}}}},
+            lights: [(name: "light", visibility: "perspective", {light})],
+            objects: [{objects} (mesh: "ground", material: "matte")],
+        )"#
+    ));
+    let open = set(&file, &[("lights[light].casts_shadow", "false")]);
+    let camera = Pinhole::of(&file);
+    let found = compare(&hdr(&frame(&file)), &hdr(&frame(&open)), |column, row| {
+        let view = camera.ray(column, row);
+        let at = camera.eye - view * (camera.eye.y / view.y);
+        (at.x.abs().max(at.z.abs()) < 4.98 && counts(at)).then_some(())?;
+        Some((0, lit(&ABOVE_GROUND, at, ray(at), 0.08)?))
+    });
+    found[0]
+}
+
 /// Catches a map that is mirrored, turned, too small for the scene or empty, and light that leaks or ground that shadows itself: two boxes
 /// above the ground, in slanting light.
 ///
@@ -159,39 +195,25 @@ fn a_lamp_in_a_room_casts_on_all_walls() {
 #[test]
 fn the_sun_casts_on_the_ground() {
     let direction = DVec3::new(-1.0, -2.0, -0.5);
-    let casters = [
-        Caster {
-            center: DVec3::new(1.0, 1.5, 0.5),
-            half: DVec3::new(0.5, 0.25, 0.75),
-        },
-        Caster {
-            center: DVec3::new(-1.5, 0.7, -1.0),
-            half: DVec3::new(0.3, 0.7, 0.4),
-        },
-    ];
-    let objects: String = casters.iter().enumerate().map(|(i, c)| c.object(i)).collect();
-    let meshes: String = casters.iter().enumerate().map(|(i, c)| c.mesh(i)).collect();
-    let file = parse(&format!(
-        r#"(
-            camera: (eye: (0, 9, 3), target: (0, 0, 0), fov: 50), size: (160, 128), pass: "forward",
-            meshes: {{"ground": Plane(size: (10, 10)), {meshes}}},
-            materials: {{"matte": {{"material": (module: "metalness", params: {{"base_color": (0.5, 0.5, 0.5)}}), "brdf": "lambert"}}}},
-            lights: [(
-                name: "sun", module: "directional", visibility: "perspective",
-                fields: {{"direction": ({}, {}, {}), "illuminance": 1000}},
-            )],
-            objects: [{objects} (mesh: "ground", material: "matte")],
-        )"#,
-        direction.x, direction.y, direction.z
-    ));
-    let open = set(&file, &[("lights[sun].casts_shadow", "false")]);
-    let camera = Pinhole::of(&file);
-    let counts = compare(&hdr(&frame(&file)), &hdr(&frame(&open)), |column, row| {
-        let ray = camera.ray(column, row);
-        let at = camera.eye - ray * (camera.eye.y / ray.y);
-        (at.x.abs().max(at.z.abs()) < 4.98).then_some(())?;
-        Some((0, lit(&casters, at, direction * -10.0, 0.08)?))
-    });
-    println!("directional map: [dark, lit] pixels {counts:?}");
-    assert!(counts[0][0] > 400 && counts[0][1] > 10_000, "{counts:?}");
+    for module in ["directional", "sun"] {
+        let light = format!(r#"module: "{module}", fields: {{"direction": (-1, -2, -0.5), "illuminance": 1000}}"#);
+        let [dark, lit] = shadows_on_the_ground(&light, |_| direction * -10.0, |_| true);
+        println!("{module} map: [dark, lit] pixels {:?}", [dark, lit]);
+        assert!(dark > 400 && lit > 10_000, "{module}: {dark} dark, {lit} lit");
+    }
+}
+
+/// Catches a map that is narrower than the cone, or as wide as its whole angle to each side is not, and one that looks elsewhere: the boxes under a spot.
+///
+/// The margin: 5 texels of 2 tan(38 deg) (6.9 m) / 1024 are .053 m.
+#[test]
+fn a_spot_casts_on_the_ground() {
+    let (place, axis) = (DVec3::new(0.6, 6.0, 1.2), DVec3::new(-0.1, -1.0, -0.2));
+    let light = r#"module: "spot", fields: {
+        "position": (0.6, 6, 1.2), "direction": (-0.1, -1, -0.2), "inner": "20 deg", "outer": "38 deg", "intensity": 1000,
+    }"#;
+    let within = |at: DVec3| (at - place).angle_between(axis) < 37f64.to_radians();
+    let [dark, lit] = shadows_on_the_ground(light, |at| place - at, within);
+    println!("spot map: [dark, lit] pixels {:?}", [dark, lit]);
+    assert!(dark > 400 && lit > 4000, "{dark} dark, {lit} lit");
 }

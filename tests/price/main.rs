@@ -116,8 +116,8 @@ fn the_instructions_are_counted() {
 }
 
 /// Most instructions of the composed pass in those of the one by hand, as naga writes both. `spec/price.md` says what they are.
-const RAW: f64 = 1.55;
+const RAW: f64 = 1.60;
 /// The same behind an optimiser that inlines.
-const OPTIMISED: f64 = 1.20;
+const OPTIMISED: f64 = 1.23;
 /// And of its arithmetic alone.
-const ARITHMETIC: f64 = 1.06;
+const ARITHMETIC: f64 = 1.10;

@@ -125,11 +125,11 @@ fn unit_or(v: vec3f, fallback: vec3f) -> vec3f {
 
 // GGX, height-correlated Smith, Schlick, Lambert. n_dot_l is above 0.
 fn brdf(s: Shading, l: vec3f, n_dot_l: f32) -> vec3f {
-    if switches.brdf == BRDF_LAMBERT {
-        return s.diffuse * INV_PI;
-    }
     if s.n_dot_v <= 0.0 {
         return vec3f(0.0);
+    }
+    if switches.brdf == BRDF_LAMBERT {
+        return s.diffuse * INV_PI;
     }
     let h = unit_or(s.v + l, s.n);
     let n_dot_h = dot(s.n, h);

@@ -55,7 +55,7 @@ codes! {
     PARAM_WRONG_TYPE = "SW0303", "A parameter's value has another type than the parameter.";
     UNKNOWN_UNIT = "SW0304", "A quantity in a unit that the parameter does not take.";
     PARAM_NOT_FINITE = "SW0305", "A parameter's value is infinite or not a number.";
-    BAD_TEMPERATURE = "SW0306", "A colour temperature outside 1000 to 40000 kelvin.";
+    BAD_TEMPERATURE = "SW0306", "A colour temperature outside 1000 to 40000 kelvin, or of daylight outside 4000 to 25000.";
     INSTANCE_FIELD_FROZEN = "SW0307", "A recipe freezes a field of `instances`, which only a scene can set.";
 
     WGSL_SYNTAX = "SW0401", "A module's or interface's WGSL cannot be parsed.";
@@ -116,7 +116,7 @@ codes! {
     UNKNOWN_TAG = "SW1003", "A rule of a space names a tag that neither the library nor the space has.";
     SPACE_TOO_LARGE = "SW1004", "A space with more alternatives than the limit.";
     SPACE_TOO_TANGLED = "SW1005", "A space whose rules tie together too much to be counted.";
-    SPACE_UNCOUNTABLE = "SW1006", "A space with too many permutations to be numbered.";
+    SPACE_UNCOUNTABLE = "SW1006", "A space with too many permutations to be numbered, or to be drawn at once.";
     SPACE_EMPTY = "SW1007", "A space without a legal permutation.";
 
     EXPERIMENT_INVALID = "SW1101", "An experiment says something that cannot be.";

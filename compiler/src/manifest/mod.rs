@@ -4,6 +4,7 @@ mod category;
 mod check;
 mod load;
 mod module;
+mod observer;
 mod recipe;
 mod spans;
 mod temperature;
@@ -17,5 +18,5 @@ pub use module::{
 };
 pub use recipe::{Node, Value};
 pub use spans::{Locator, Step};
-pub use temperature::{KELVIN, black_body};
-pub use value::{Typed, ValueError, shortest, typed};
+pub use temperature::{DAYLIGHT, KELVIN, black_body, daylight};
+pub use value::{MAX_EFFICACY, Typed, ValueError, shortest, typed};

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde_json::json;
 use thiserror::Error;
 
-use super::temperature::{KELVIN, black_body};
+use super::temperature::{DAYLIGHT, KELVIN, black_body, daylight};
 use super::{Param, ParamType, Value};
 use crate::diagnostics::{Diagnostic, SourceFile, codes};
 
@@ -67,17 +67,26 @@ pub enum ValueError {
     /// A colour temperature that is not taken.
     #[error("a colour temperature of {0} K is outside {lo} to {hi} K", lo = KELVIN.start(), hi = KELVIN.end())]
     BadTemperature(f64),
+    /// A colour temperature that daylight does not have.
+    #[error("daylight of {0} K is outside {lo} to {hi} K", lo = DAYLIGHT.start(), hi = DAYLIGHT.end())]
+    BadDaylight(f64),
+    /// A luminous efficacy that no light has.
+    #[error("an efficacy of {0} lm/W is outside 0 to {MAX_EFFICACY} lm/W")]
+    BadEfficacy(f64),
 }
+
+/// Luminous efficacy of light of 540 THz, of which there is no larger one but by a rounding (definition of the candela), lm/W.
+pub const MAX_EFFICACY: f64 = 683.0;
 
 impl ValueError {
     /// Its code among [`codes`].
     pub fn code(&self) -> &'static str {
         match self {
             Self::WrongType { .. } => codes::PARAM_WRONG_TYPE,
-            Self::OutOfRange { .. } => codes::PARAM_OUT_OF_RANGE,
+            Self::OutOfRange { .. } | Self::BadEfficacy(_) => codes::PARAM_OUT_OF_RANGE,
             Self::UnknownUnit { .. } => codes::UNKNOWN_UNIT,
             Self::NotFinite(_) => codes::PARAM_NOT_FINITE,
-            Self::BadTemperature(_) => codes::BAD_TEMPERATURE,
+            Self::BadTemperature(_) | Self::BadDaylight(_) => codes::BAD_TEMPERATURE,
         }
     }
 
@@ -91,6 +100,9 @@ impl ValueError {
         let found = Diagnostic::new(code, message).at(file, span, self.to_string());
         match self {
             Self::UnknownUnit { known, .. } if known.is_empty() => found.note("it is a pure number: write it without a unit"),
+            Self::UnknownUnit { found: unit, known } if unit == "W" && known.iter().any(|unit| unit == "lm") => {
+                found.note("how much light a watt gives is the lamp's efficacy: write it as `60 W at 15 lm/W`")
+            }
             Self::UnknownUnit { found: unit, known } => found.suggest(unit, "units", known.iter().map(String::as_str)),
             _ => found,
         }
@@ -121,17 +133,17 @@ pub fn typed(param: &Param, value: &Value) -> Result<Typed, ValueError> {
         ParamType::Vec4 => vector(param, value).map(Typed::Vec4),
         ParamType::Color => match value {
             Value::Text(text) => {
-                let kelvin = match quantity(text) {
-                    Some((kelvin, "K")) => kelvin,
+                let colour = match quantity(text) {
+                    Some((kelvin, "K")) => black_body(kelvin).ok_or(ValueError::BadTemperature(kelvin))?,
+                    Some((kelvin, "K daylight")) => daylight(kelvin).ok_or(ValueError::BadDaylight(kelvin))?,
                     Some((_, unit)) => {
                         return Err(ValueError::UnknownUnit {
                             found: unit.to_owned(),
-                            known: vec!["K".to_owned()],
+                            known: vec!["K".to_owned(), "K daylight".to_owned()],
                         });
                     }
                     None => return Err(wrong_type(param, value)),
                 };
-                let colour = black_body(kelvin).ok_or(ValueError::BadTemperature(kelvin))?;
                 vector(param, &Value::List(colour.to_vec())).map(Typed::Vec3)
             }
             _ => vector(param, value).map(Typed::Vec3),
@@ -145,12 +157,23 @@ fn quantity(text: &str) -> Option<(f64, &str)> {
     Some((number.parse().ok()?, unit.trim()))
 }
 
+/// A power in watt with the efficacy that makes light of it, `60 W at 15 lm/W`, as a flux in lumen; anything else as it is.
+fn luminous(number: f64, unit: &str) -> Result<(f64, &str), ValueError> {
+    let efficacy = unit.strip_prefix("W at ").and_then(quantity);
+    match efficacy {
+        Some((efficacy, "lm/W")) if (0.0..=MAX_EFFICACY).contains(&efficacy) => Ok((number * efficacy, "lm")),
+        Some((efficacy, "lm/W")) => Err(ValueError::BadEfficacy(efficacy)),
+        _ => Ok((number, unit)),
+    }
+}
+
 /// The number in the parameter's unit, not yet checked.
 fn scalar(param: &Param, value: &Value) -> Result<f64, ValueError> {
     match value {
         Value::Number(number) => Ok(*number),
         Value::Text(text) => {
             let (number, unit) = quantity(text).ok_or_else(|| wrong_type(param, value))?;
+            let (number, unit) = luminous(number, unit)?;
             if unit == param.unit {
                 return Ok(number);
             }

@@ -31,6 +31,7 @@ use std::sync::Arc;
 
 use crate::catalog::Catalog;
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
+use crate::limits;
 use crate::resolve::{Place, Way};
 
 pub use compile::{Compiled, Passes, Work, compile_all};
@@ -229,9 +230,18 @@ impl Space {
     /// Numbers of so many different permutations, ascending, each set of them as probable as any other. All where there are no more.
     ///
     /// # Errors
-    /// There are too many to number.
+    /// There are too many to number, or more than [`limits::DRAWN`] would be drawn.
     pub fn random(&self, number: usize, seed: u64) -> Result<Vec<u128>, Report> {
-        Ok(sample::distinct(self.count()?, number, seed))
+        let count = self.count()?;
+        let drawn = count.min(number as u128);
+        if drawn > limits::DRAWN as u128 {
+            let message = format!("{drawn} permutations are more than are drawn at once");
+            return Err(Diagnostic::new(codes::SPACE_UNCOUNTABLE, message)
+                .at(&self.place.file, self.place.name_span(), "of this")
+                .note(format!("at most {} are drawn; all can be walked through", limits::DRAWN))
+                .into());
+        }
+        Ok(sample::distinct(count, number, seed))
     }
 
     fn picks(&self, mut index: u128) -> Option<Picks> {

@@ -99,6 +99,10 @@ pub fn standard() -> Texts {
                 walk(&entry.path(), &path, texts);
             } else if name.ends_with(".wgsl") || name == "module.ron" || name == "category.ron" {
                 texts.insert(path, std::fs::read_to_string(entry.path()).unwrap());
+            } else if !name.ends_with(".md") && !name.ends_with(".rs") && !name.ends_with(".ron") {
+                // A table: as many numbers, all 0, which are a text too.
+                let length = entry.metadata().unwrap().len();
+                texts.insert(path, "\0".repeat(usize::try_from(length).unwrap()));
             }
         }
     }

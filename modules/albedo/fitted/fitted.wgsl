@@ -4,7 +4,7 @@ fn facet_albedo(s: Surface, cosine: f32) -> vec3f {
     let alpha = clamp(s.alpha, 1e-4, 1.0);
     let m = clamp(cosine, 0.0, 1.0);
     let u = sqrt(min(m * (1.0 + alpha) / (m + alpha), 1.0));
-    let y = sqrt(alpha);
+    let y = roughness_of_alpha(alpha);
     let widths = vec4f(1.0, y, alpha, alpha * y);
     let root = vec3f(0.926725, -0.706094, 0.533226)
         + u * (vec3f(-3.930082, 7.258192, -3.355085)
@@ -25,7 +25,7 @@ fn facet_albedo(s: Surface, cosine: f32) -> vec3f {
 /// The mean of the fit above, by polynomials in the root of alpha.
 fn facet_albedo_mean(s: Surface) -> vec3f {
     let alpha = clamp(s.alpha, 1e-4, 1.0);
-    let y = sqrt(alpha);
+    let y = roughness_of_alpha(alpha);
     let low = dot(vec3f(1.0, y, alpha), vec3f(10.248155, -46.491723, 115.728747));
     let high = dot(vec3f(1.0, y, alpha), vec3f(-162.093598, 116.833022, -33.630077));
     let lost = alpha * alpha * (low + alpha * y * high);

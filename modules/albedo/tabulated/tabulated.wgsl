@@ -4,7 +4,7 @@ var<storage> albedo: array<vec2f, 1056>;
 
 /// The width's place between the table's rows: evenly in the root, from 1e-4 to 1.
 fn row_of(alpha: f32) -> f32 {
-    return (sqrt(alpha) - 0.01) / 0.99 * f32(SIDE - 1u);
+    return (roughness_of_alpha(alpha) - 0.01) / 0.99 * f32(SIDE - 1u);
 }
 
 /// The number below a place that has a next one.

@@ -42,7 +42,9 @@ fn brdf(s: Surface, v: vec3f, l: vec3f) -> vec3f {
     let h = unit_or(v + l, c.normal);
     // Lights multiply by the cosine to the shading normal; the coat is lit by that to its own.
     let own = s.coat * (c_dot_l / n_dot_l);
-    return below + fresnel(c, dot(v, h)) * (own * distribution(c, h) * masking(c, v, l, h));
+    // v.h and l.h, which are the same half length but differ where rounded directions at the horizon leave them no digits.
+    let cosine = 0.5 * length(v + l);
+    return below + fresnel(c, cosine) * (own * distribution(c, h) * masking(c, v, l, h));
 }
 
 /// Share of the samples that the coat draws: by how much it reflects, and the base, about, seen from v. The floor keeps black from 0 / 0.

@@ -2,6 +2,8 @@
 //!
 //! A decoder turns the bytes of a format into 32-bit floats. [`FORMATS`] is the list of them; a module's manifest names one.
 
+pub mod photometry;
+
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
@@ -32,6 +34,7 @@ pub const FORMATS: &[(&str, Decoder)] = &[
     ("rgl", |bytes| {
         Rgl::read(bytes).map(|table| table.floats()).map_err(|why| why.to_string())
     }),
+    ("photometry", photometry::decode),
 ];
 
 /// Why bytes are no numbers.
@@ -63,6 +66,10 @@ pub fn decode(format: &str, bytes: &[u8]) -> Result<Vec<f32>, DecodeError> {
 /// # Errors
 /// As for [`decode`]; the file cannot be read, or is larger than [`MAX_DATA`].
 pub fn read(path: &Path, format: &str) -> Result<Vec<f32>, DecodeError> {
+    // Said before the file is looked for: what is wrong is the module, whatever the file.
+    if FORMATS.iter().all(|(name, _)| *name != format) {
+        return Err(DecodeError::UnknownFormat(format.to_owned()));
+    }
     let failed = |error: std::io::Error| DecodeError::Damaged(error.to_string());
     if path.is_dir() {
         return Err(DecodeError::Damaged("is a folder".to_owned()));

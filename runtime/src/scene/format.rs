@@ -105,6 +105,9 @@ pub struct LightDecl {
     /// Parameters of the kind.
     #[serde(default)]
     pub params: IndexMap<String, Value>,
+    /// Files of data of the kind by the name of its resource, relative to the scene's folder.
+    #[serde(default)]
+    pub files: IndexMap<String, String>,
     /// How its shadows are found. None: it casts none.
     #[serde(default)]
     pub visibility: Option<Choice>,

@@ -211,6 +211,7 @@ pub(super) fn as_choice(light: &LightDecl) -> Choice {
         fill: light.fill.clone(),
         freeze: light.freeze.clone(),
         params: light.params.clone(),
+        files: light.files.clone(),
         ..Choice::default()
     }
 }

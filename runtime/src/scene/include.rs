@@ -208,6 +208,7 @@ pub(super) fn light(examiner: &mut Examiner, decl: &GltfDecl, light: &Light, wor
         fill: IndexMap::new(),
         freeze: IndexMap::new(),
         params: IndexMap::new(),
+        files: IndexMap::new(),
         visibility: decl.visibility.get(light.kind).cloned(),
         casts_shadow: true,
     })

@@ -393,12 +393,22 @@ fn whole_gltf_files() {
     let mask = said(|_| {});
     assert_eq!(mask.diagnostics[0].code, "SW0904");
     assert!(mask.diagnostics[0].message.contains("gltf:alphaCutoff"), "{mask}");
-    let spot = said(|d| {
-        d["materials"][0]["alphaMode"] = "OPAQUE".into();
-        d["extensions"]["KHR_lights_punctual"]["lights"][0] = serde_json::json!({"type": "spot", "spot": {}});
-    });
-    assert_eq!(spot.diagnostics[0].code, "SW0904");
-    assert!(spot.diagnostics[0].message.contains("gltf:light/spot"), "{spot}");
+    let spot = |outer: f64| {
+        let sample = crate::mesh::gltf::tests::sample_with(|d| {
+            d["materials"][0]["alphaMode"] = "OPAQUE".into();
+            let cone = serde_json::json!({"innerConeAngle": 0.25, "outerConeAngle": outer});
+            d["extensions"]["KHR_lights_punctual"]["lights"][0] = serde_json::json!({"type": "spot", "intensity": 7, "spot": cone});
+        });
+        derive(sample, r#", visibility: {"gltf:light/spot": "perspective"}"#)
+    };
+    let frame = spot(0.5).unwrap();
+    let beam = frame.lights.iter().find(|l| l.node.module == "spot").unwrap();
+    assert_eq!(beam.instances[0]["inner"], Value::Number(0.25));
+    assert_eq!(beam.instances[0]["outer"], Value::Number(0.5));
+    assert_eq!(beam.instances[0]["intensity"], Value::Text("7 cd".to_owned()));
+    assert!(beam.instances[0].contains_key("position") && beam.instances[0].contains_key("direction"));
+    assert!(format!("{:?}", beam.node).contains("perspective"));
+    assert_eq!(spot(4.0).unwrap_err().diagnostics[0].code, "SW0302");
     assert_eq!(derive(b"no file".to_vec(), "").unwrap_err().diagnostics[0].code, "SW0903");
 }
 

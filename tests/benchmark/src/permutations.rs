@@ -16,10 +16,11 @@ const SEED: u64 = 1;
 pub fn permutations(catalog: &Catalog, count: usize) -> Result<Vec<Recipe>, String> {
     let said = |report: Report| report.render();
     let space = Space::parse(catalog, "growth.space.ron", SPACE).map_err(said)?;
-    let drawn = space.random(count, SEED).map_err(said)?;
-    if drawn.len() < count {
-        return Err(format!("growth.space.ron has {} legal permutations, not {count}", drawn.len()));
+    let legal = space.count().map_err(said)?;
+    if legal < count as u128 {
+        return Err(format!("growth.space.ron has {legal} legal permutations, not {count}"));
     }
+    let drawn = space.random(count, SEED).map_err(said)?;
     let permutations = drawn.into_iter().filter_map(|index| space.get(index));
     Ok(permutations.map(|permutation| permutation.recipe).collect())
 }

@@ -96,6 +96,49 @@ fn units() {
     assert_eq!(typed(&flux, &text("500 mlm")), Ok(Typed::F32(0.5)));
 }
 
+/// Catches watts that are taken for lumens, an efficacy that is ignored or dropped, one that no lamp has, and watts where no light is meant.
+#[test]
+fn watts() {
+    let flux = param(ParamType::F32, "lm", None);
+    assert_eq!(typed(&flux, &text("60 W at 15 lm/W")), Ok(Typed::F32(900.0)));
+    let candela = Param {
+        also: [("lm".to_owned(), 0.25)].into_iter().collect(),
+        ..param(ParamType::F32, "cd", None)
+    };
+    assert_eq!(typed(&candela, &text(" 8 W at 100 lm/W ")), Ok(Typed::F32(200.0)));
+    for (written, expected) in [
+        (
+            "\"60 W\"",
+            "\
+error[SW0304]: the value of `p` does not fit
+  --> r:1:1
+  |
+1 | \"60 W\"
+  | ^^^^^^ the unit `W` is not taken here
+  |
+  = how much light a watt gives is the lamp's efficacy: write it as `60 W at 15 lm/W`
+",
+        ),
+        (
+            "\"60 W at 700 lm/W\"",
+            "\
+error[SW0302]: the value of `p` does not fit
+  --> r:1:1
+  |
+1 | \"60 W at 700 lm/W\"
+  | ^^^^^^^^^^^^^^^^^^ an efficacy of 700 lm/W is outside 0 to 683 lm/W
+",
+        ),
+    ] {
+        assert_eq!(rendered(&flux, written).trim_end(), expected.trim_end());
+    }
+    for unknown in ["60 W at 15 lm", "60 W at", "60 W at x lm/W", "60 W 15 lm/W"] {
+        assert_eq!(typed(&flux, &text(unknown)).unwrap_err().code(), codes::UNKNOWN_UNIT, "{unknown}");
+    }
+    let length = param(ParamType::F32, "m", None);
+    assert_eq!(typed(&length, &text("60 W at 15 lm/W")).unwrap_err().code(), codes::UNKNOWN_UNIT);
+}
+
 /// Catches a number that becomes infinite or NaN on its way.
 #[test]
 fn not_finite() {
@@ -121,7 +164,22 @@ fn temperature() {
     let Ok(Typed::Vec3([r, g, b])) = typed(&param(ParamType::Color, "", None), &text("2856 K")) else {
         panic!("no colour");
     };
-    assert!((r - 1.8448).abs() < 0.02 && (g - 0.8261).abs() < 0.006 && (b - 0.2334).abs() < 0.002);
+    assert!((r - 1.8448).abs() < 1e-4 && (g - 0.8261).abs() < 1e-4 && (b - 0.2334).abs() < 1e-4);
+    let Ok(Typed::Vec3(white)) = typed(&param(ParamType::Color, "", None), &text("6504 K daylight")) else {
+        panic!("no colour");
+    };
+    assert!(white.iter().all(|channel| (channel - 1.0).abs() < 1e-3), "{white:?}");
+    let expected = "\
+error[SW0306]: the value of `p` does not fit
+  --> r:1:1
+  |
+1 | \"3000 K daylight\"
+  | ^^^^^^^^^^^^^^^^^ daylight of 3000 K is outside 4000 to 25000 K
+";
+    assert_eq!(
+        rendered(&param(ParamType::Color, "", None), "\"3000 K daylight\"").trim_end(),
+        expected.trim_end()
+    );
 }
 
 /// Catches a message without the value, its bounds or what to write instead. One whole text for each code.

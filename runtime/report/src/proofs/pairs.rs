@@ -112,6 +112,7 @@ fn rows(pairs: &[Pair], takes_half: bool) -> Rows {
         .numbers("s.widths.x", pairs.iter().map(|p| p.alpha))
         .numbers("s.widths.y", pairs.iter().enumerate().map(across))
         .vectors("s.normal", pairs.iter().map(|p| p.frame.z_axis))
+        .vectors("s.coat_normal", pairs.iter().map(|p| p.frame.z_axis))
         .vectors("s.tangent", pairs.iter().map(|p| p.frame.x_axis))
         .vectors("v", pairs.iter().map(|p| p.v))
         .vectors("l", pairs.iter().map(|p| p.l));

@@ -354,7 +354,7 @@ fn light_at(light: &gltf::khr_lights_punctual::Light, node: &gltf::Node, place: 
             outer_cone_angle,
         } => {
             fields.insert("gltf:innerConeAngle", Value::Number(inner_cone_angle.into()));
-            fields.insert("gltf:outerConeAngle", Value::Number(outer_cone_angle.into()));
+            fields.insert("half_angle", Value::Number(outer_cone_angle.into()));
             ("gltf:light/spot", "cd")
         }
     };

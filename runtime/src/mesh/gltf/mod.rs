@@ -123,7 +123,7 @@ pub struct Light {
     /// What modules say they represent: `gltf:light/point`, `gltf:light/directional`, `gltf:light/spot`.
     pub kind: &'static str,
     /// By role: `position` (m), `direction` (of the light's travel), `range` (m), `gltf:color` (linear), `gltf:intensity` with its unit
-    /// (`"5 cd"`, `"9 lx"`), and for spots `gltf:innerConeAngle` and `gltf:outerConeAngle` (radians).
+    /// (`"5 cd"`, `"9 lx"`), and for spots `gltf:innerConeAngle` and, of the outer cone, `half_angle` (radians).
     pub fields: IndexMap<&'static str, Value>,
 }
 
