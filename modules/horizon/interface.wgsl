@@ -77,6 +77,27 @@ fn segment_integral(m: vec3f, d: vec3f) -> f32 {
     return 0.5 * span * per_length * (nearest.z * straight / h2 + slope * (s0 + s1) / ends);
 }
 
+/// The part of -last < t < last where some of a tube's lines are above the horizon, where that is one part: beyond it the integrand would have a bend.
+/// t is the tangent of half the angle about the axis, and in it the height of a line's higher end is a quadratic over 1 + t^2. `top` is the height of the
+/// axis there, `out` and `aside` are what a radius adds at t = 0 and t = 1.
+fn part_above(top: f32, out: f32, aside: f32, last: f32) -> vec2f {
+    let a = top - out;
+    let c = top + out;
+    let square = aside * aside - a * c;
+    if square <= 0.0 {
+        return vec2f(-last, last);
+    }
+    let q = -(aside + select(-1.0, 1.0, aside >= 0.0) * sqrt(square));
+    let r1 = q / select(a, 1e-30, abs(a) < 1e-30);
+    let r2 = c / select(q, 1e-30, abs(q) < 1e-30);
+    let low = min(r1, r2);
+    let high = max(r1, r2);
+    if a < 0.0 {
+        return vec2f(clamp(low, -last, last), clamp(high, -last, last));
+    }
+    return vec2f(select(-last, high, low < -last && high > -last && high < last), select(last, low, high > last && low < last && low > -last));
+}
+
 /// Form factor of the parallelogram with the centre c and half sides a and b, positive where it is seen from the side that a x b points to.
 ///
 /// Where it is narrow the contour's terms cancel; there it is integrated across its width with Gauss and Legendre's four points, over

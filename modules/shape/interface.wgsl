@@ -41,6 +41,17 @@ fn shape_toward(i: u32, origin: vec3f, along: vec3f) -> vec3f {
     return sphere_toward(shape_centre(i) - origin, shape_radius(i), along);
 }
 
+/// How many corners the shape's outline has, seen from the origin; 0 where nothing of it shines there. Round outlines have enough of them.
+fn shape_corners(i: u32, origin: vec3f) -> u32 {
+    return CIRCLE_CORNERS;
+}
+
+/// Offset from the origin to the corner k of that outline, in the order around it, m. The edges are great circles in the origin's sky, shorter
+/// than half of one.
+fn shape_corner(i: u32, origin: vec3f, k: u32) -> vec3f {
+    return sphere_corner(shape_centre(i) - origin, shape_radius(i), k);
+}
+
 /// Middle of the shape, m.
 fn shape_centre(i: u32) -> vec3f {
     return vec3f(0.0, 0.0, 2.0);
@@ -55,6 +66,17 @@ fn shape_radius(i: u32) -> f32 {
 /// 0 from behind.
 fn shape_projected_area(i: u32, origin: vec3f) -> f32 {
     return PI * shape_radius(i) * shape_radius(i);
+}
+
+// A circle as a polygon of the same area.
+
+const CIRCLE_CORNERS: u32 = 24u;
+
+/// Corner k of the regular polygon with the area of the unit disk.
+fn circle_corner(k: u32) -> vec2f {
+    // Of angles beyond pi WGSL promises no sine.
+    let turn = PI * (f32(k) / 12.0 - 1.0);
+    return 1.005741237 * vec2f(cos(turn), sin(turn));
 }
 
 // A sphere by its centre's offset c from the origin and its radius, m. A point inside sees what one on the sphere sees.
@@ -96,6 +118,14 @@ fn mapped_sphere_factor(c: vec3f, radius: f32, local: mat3x3f) -> f32 {
     return ellipse_factor(local * frame[2], local * (frame[0] * rim), local * (frame[1] * rim));
 }
 
+/// The sphere's rim, in the plane through its centre. That of a point on the sphere would be infinitely far away.
+fn sphere_corner(c: vec3f, radius: f32, k: u32) -> vec3f {
+    let sine2 = min(sphere_sine_squared(c, radius), 0.999998);
+    let frame = frame_of(unit_or(c, vec3f(0.0, 0.0, 1.0)));
+    let at = circle_corner(k) * sqrt(sine2 / (1.0 - sine2));
+    return (frame[2] + frame[0] * at.x + frame[1] * at.y) * max(length(c), 1e-15);
+}
+
 /// The point of the sphere nearest to the ray along the unit direction `along` (Karis 2013, eqs. 11 and 12); the centre's own depth where the ray hits.
 fn sphere_toward(c: vec3f, radius: f32, along: vec3f) -> vec3f {
     let to_ray = dot(c, along) * along - c;
@@ -111,6 +141,21 @@ fn plane_axes(direction: vec3f, right: vec3f) -> mat3x3f {
     let normal = unit_or(direction, vec3f(0.0, 0.0, 1.0));
     let width = unit_or(right - normal * dot(normal, right), frame_of(normal)[0]);
     return mat3x3f(width, cross(normal, width), normal);
+}
+
+/// 1 where the triangle a, b, c goes counterclockwise around the origin, -1 where clockwise, 0 where the origin is outside. Of a fan of triangles that
+/// begin with its first corner the common sides belong to the one before them.
+fn triangle_turn(a: vec2f, b: vec2f, c: vec2f) -> i32 {
+    let sides = vec3f(a.x * b.y - a.y * b.x, b.x * c.y - b.y * c.x, c.x * a.y - c.y * a.x);
+    if sides.x > 0.0 && sides.y >= 0.0 && sides.z >= 0.0 {
+        return 1;
+    }
+    return select(0, -1, sides.x < 0.0 && sides.y <= 0.0 && sides.z <= 0.0);
+}
+
+/// A point of a plane by its coordinates there, from the offset of their origin.
+fn plane_point(c: vec3f, frame: mat3x3f, at: vec2f) -> vec3f {
+    return c + frame[0] * at.x + frame[1] * at.y;
 }
 
 /// 1 where the side that is seen shines: the front, seen by a positive cosine, or either.

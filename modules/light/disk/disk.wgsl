@@ -78,6 +78,16 @@ fn shape_toward(i: u32, origin: vec3f, along: vec3f) -> vec3f {
     return instances[i].position - origin + frame[0] * at.x + frame[1] * at.y;
 }
 
+fn shape_corners(i: u32, origin: vec3f) -> u32 {
+    return select(0u, CIRCLE_CORNERS, plane_shines(dot(origin - instances[i].position, axes(i)[2]), params.two_sided) > 0.0);
+}
+
+fn shape_corner(i: u32, origin: vec3f, k: u32) -> vec3f {
+    let frame = axes(i);
+    let at = circle_corner(k) * instances[i].radius;
+    return plane_point(instances[i].position - origin, frame, at);
+}
+
 /// Radiance toward v because of all disks, cd/m2.
 fn light(s: Surface, v: vec3f) -> vec3f {
     var sum = vec3f(0.0);

@@ -54,16 +54,8 @@ fn cover(i: u32, at: vec2f) -> vec2i {
     var p = corners(i);
     var covers = vec2i(0);
     for (var k = 1u; k + 1u < corner_count(i); k++) {
-        let a = p[0] - at;
-        let b = p[k] - at;
-        let c = p[k + 1u] - at;
-        let sides = vec3f(a.x * b.y - a.y * b.x, b.x * c.y - b.y * c.x, c.x * a.y - c.y * a.x);
-        // The diagonals belong to the triangle before them.
-        if sides.x > 0.0 && sides.y >= 0.0 && sides.z >= 0.0 {
-            covers += vec2i(1, 1);
-        } else if sides.x < 0.0 && sides.y <= 0.0 && sides.z <= 0.0 {
-            covers += vec2i(1, -1);
-        }
+        let turn = triangle_turn(p[0] - at, p[k] - at, p[k + 1u] - at);
+        covers += vec2i(abs(turn), turn);
     }
     return covers;
 }
@@ -75,9 +67,7 @@ fn shape_luminance(i: u32) -> vec3f {
 }
 
 fn shape_centre(i: u32) -> vec3f {
-    let frame = axes(i);
-    let centre = outline(i).centre;
-    return instances[i].position + frame[0] * centre.x + frame[1] * centre.y;
+    return plane_point(instances[i].position, axes(i), outline(i).centre);
 }
 
 fn shape_radius(i: u32) -> f32 {
@@ -230,6 +220,15 @@ fn shape_toward(i: u32, origin: vec3f, along: vec3f) -> vec3f {
         }
     }
     return instances[i].position - origin + frame[0] * at.x + frame[1] * at.y;
+}
+
+fn shape_corners(i: u32, origin: vec3f) -> u32 {
+    return select(0u, corner_count(i), plane_shines(dot(origin - instances[i].position, axes(i)[2]), params.two_sided) > 0.0);
+}
+
+fn shape_corner(i: u32, origin: vec3f, k: u32) -> vec3f {
+    var p = corners(i);
+    return plane_point(instances[i].position - origin, axes(i), p[k]);
 }
 
 /// Radiance toward v because of all polygons, cd/m2.

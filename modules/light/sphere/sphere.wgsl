@@ -43,6 +43,14 @@ fn shape_toward(i: u32, origin: vec3f, along: vec3f) -> vec3f {
     return sphere_toward(instances[i].position - origin, instances[i].radius, along);
 }
 
+fn shape_corners(i: u32, origin: vec3f) -> u32 {
+    return CIRCLE_CORNERS;
+}
+
+fn shape_corner(i: u32, origin: vec3f, k: u32) -> vec3f {
+    return sphere_corner(instances[i].position - origin, instances[i].radius, k);
+}
+
 /// Radiance toward v because of all spheres, cd/m2.
 fn light(s: Surface, v: vec3f) -> vec3f {
     var sum = vec3f(0.0);

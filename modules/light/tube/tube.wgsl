@@ -129,27 +129,6 @@ fn line_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, t: f
     return width * segment_integral(local * (c + out_at(frame, t) * r), local * (frame[2] * (0.5 * instances[i].length)));
 }
 
-/// The part of -last < t < last where some of the tube's lines are above the horizon, where that is one part: beyond it the integrand would have a bend.
-/// In t the height of a line's higher end is a quadratic over 1 + t^2; `top` is that of the axis, `out` and `aside` are those of frame[0] and
-/// frame[1], times the radius.
-fn part_above(top: f32, out: f32, aside: f32, last: f32) -> vec2f {
-    let a = top - out;
-    let c = top + out;
-    let square = aside * aside - a * c;
-    if square <= 0.0 {
-        return vec2f(-last, last);
-    }
-    let q = -(aside + select(-1.0, 1.0, aside >= 0.0) * sqrt(square));
-    let r1 = q / select(a, 1e-30, abs(a) < 1e-30);
-    let r2 = c / select(q, 1e-30, abs(q) < 1e-30);
-    let low = min(r1, r2);
-    let high = max(r1, r2);
-    if a < 0.0 {
-        return vec2f(clamp(low, -last, last), clamp(high, -last, last));
-    }
-    return vec2f(select(-last, high, low < -last && high > -last && high < last), select(last, low, high > last && low < last && low > -last));
-}
-
 /// The side of a thin tube: lines along it, each integrated exactly, and across them Gauss and Legendre's eight points, which are off by 4e-5.
 /// No terms cancel, however thin it is.
 fn thin_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, last: f32) -> f32 {
@@ -169,25 +148,29 @@ fn thin_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, last
     return sum * wide * abs(determinant(local)) * half * INV_PI;
 }
 
-/// The side of a thick tube by its outline: two lines, and the arcs of the ends, each in twelve chords. A chord over the angle delta loses delta^2 / 12 of
-/// the radius in the mean, so its ends are that far out, but those where the lines begin.
-fn outline_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, last: f32) -> f32 {
-    let half = frame[2] * (0.5 * instances[i].length);
+/// Corner k of 26 of the outline: along the circle of one end and back along the other's, over the part that is seen of the side, `seen` to either side; but
+/// at the end `cap` on the far side, behind the cap. A chord over the angle delta loses delta^2 / 12 of the radius in the mean, so corners are that
+/// far out, but those where the lines begin.
+fn outline_corner(i: u32, frame: mat3x3f, c: vec3f, seen: f32, cap: f32, k: u32) -> vec3f {
+    let end = select(-1.0, 1.0, k < 13u);
+    let step = select(25u - k, k, k < 13u);
+    let half = select(seen, PI - seen, cap == end);
+    let turn = half * (f32(step) / 6.0 - 1.0);
+    let out = instances[i].radius * select(1.0, 1.0 + half * half / 432.0, step > 0u && step < 12u);
+    return c + frame * vec3f(out * select(cos(turn), -cos(turn), cap == end), out * sin(turn), 0.5 * end * instances[i].length);
+}
+
+/// The side of a thick tube by its outline.
+fn outline_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f) -> f32 {
+    let seen = half_turn(i, away);
     var rim = vec2f(0.0);
     var sum = 0.0;
-    var at = local * (c + half + out_at(frame, -last) * instances[i].radius);
-    for (var k = 1u; k < 26u; k++) {
-        let is_far = k > 12u;
-        let step = select(k, 25u - k, is_far);
-        let t = last * (f32(step) / 6.0 - 1.0);
-        let delta = last / (3.0 + 3.0 * t * t);
-        let out = select(1.0, 1.0 + delta * delta / 12.0, step > 0u && step < 12u);
-        let next = local * (c + select(half, -half, is_far) + out_at(frame, t) * (out * instances[i].radius));
+    var at = local * outline_corner(i, frame, c, seen, 0.0, 25u);
+    for (var k = 0u; k < 26u; k++) {
+        let next = local * outline_corner(i, frame, c, seen, 0.0, k);
         sum += edge_above(at, next, next - at, &rim);
         at = next;
     }
-    let first = local * (c + half + out_at(frame, -last) * instances[i].radius);
-    sum += edge_above(at, first, first - at, &rim);
     return abs(sum) * 0.159154943091895;
 }
 
@@ -209,7 +192,7 @@ fn shape_form_factor(i: u32, origin: vec3f, local: mat3x3f) -> f32 {
         if across < 0.15 * length(nearest) {
             sum = thin_factor(i, frame, c, away, local, last);
         } else {
-            sum = outline_factor(i, frame, c, away, local, last);
+            sum = outline_factor(i, frame, c, away, local);
         }
     }
     if params.caps {
@@ -230,6 +213,24 @@ fn shape_toward(i: u32, origin: vec3f, along: vec3f) -> vec3f {
     let x = (slope * dot(along, c) - dot(c, e)) / max(1.0 - slope * slope, 1e-6);
     let half = 0.5 * instances[i].length;
     return sphere_toward(c + e * clamp(x, -half, half), instances[i].radius, along);
+}
+
+/// From within the radius only the cap is seen.
+fn shape_corners(i: u32, origin: vec3f) -> u32 {
+    let c = instances[i].position - origin;
+    let is_aside = length(cross(c, axis(i))) > instances[i].radius;
+    return select(select(0u, CIRCLE_CORNERS, params.caps && cap_side(i, c) != 0.0), 26u, is_aside);
+}
+
+fn shape_corner(i: u32, origin: vec3f, k: u32) -> vec3f {
+    let c = instances[i].position - origin;
+    let frame = seen_frame(i, c);
+    let away = -dot(c, frame[0]);
+    let cap = select(0.0, cap_side(i, c), params.caps);
+    if away > instances[i].radius {
+        return outline_corner(i, frame, c, half_turn(i, away), cap, k);
+    }
+    return c + frame * vec3f(circle_corner(k) * instances[i].radius, 0.5 * cap * instances[i].length);
 }
 
 /// Radiance toward v because of all tubes, cd/m2.
