@@ -19,7 +19,15 @@ use shadewright::runtime::probe::Probe;
 const DRAWN: usize = 512;
 const SHAPES: [&str; 6] = ["sphere", "disk", "rectangle", "polygon", "tube", "tube with caps"];
 const IRRADIANCE: [&str; 5] = ["form-factor", "centre", "representative-point", "structured-sampling", "reference"];
-const HIGHLIGHT: [&str; 6] = ["none", "representative-point", "d-modification", "overlap", "ltc", "reference"];
+const HIGHLIGHT: [&str; 7] = [
+    "none",
+    "representative-point",
+    "d-modification",
+    "overlap",
+    "ltc",
+    "phong-lobe",
+    "reference",
+];
 /// Roughness from 0.02 to 1, squared.
 const ALPHAS: [f64; 5] = [4e-4, 0.01, 0.04, 0.25, 1.0];
 
@@ -336,6 +344,35 @@ fn a_sinking_light_fades() {
                         "{shape} of {size}, {with}: a pop, {pair:?} at step {step}"
                     );
                 }
+            }
+        }
+    }
+}
+
+/// Catches an outline that is not closed where the horizon cuts it, or that leaves corners out: then the mirrored light pops, or does not end at 0.
+#[test]
+fn a_sinking_outline_fades() {
+    const STEPS: usize = 400;
+    for shape in SHAPES {
+        for (size, thin, alpha) in [(0.3, 0.5, 0.04), (0.3, 1.0, 0.36), (0.3, 0.5, 1.0), (0.01, 1.0, 0.25)] {
+            let row = |step: usize| {
+                let height = 1.1 * size * (1.0 - 2.0 * step as f64 / STEPS as f64);
+                let facing = if shape.starts_with("tube") { DVec3::Y } else { -DVec3::X };
+                let at = placed(shape, DVec3::new(1.0, 0.0, height), facing, size, thin, DVec3::Z);
+                json!({
+                    "s": {"diffuse": [0, 0, 0], "f0": [1, 1, 1], "alpha": alpha, "widths": [alpha, alpha]},
+                    "v": [-0.9, 0.0, 0.435_889_9], "instances": [at.fields],
+                })
+            };
+            let rows: Vec<Json> = (0..=STEPS).map(row).collect();
+            let got = evaluated(&light(shape, r#"(module: "split", fill: {"specular": "phong-lobe"})"#), &rows, false);
+            let most = got.iter().copied().fold(0.0, f64::max);
+            assert!(most > 1e-6 && got[STEPS] == 0.0, "{shape} of {size}, {alpha}: {most}, at last {}", got[STEPS]);
+            for (step, pair) in got.windows(2).enumerate() {
+                assert!(
+                    (pair[0] - pair[1]).abs() <= 0.05 * most,
+                    "{shape} of {size}, {alpha}: a pop, {pair:?} at step {step}"
+                );
             }
         }
     }
