@@ -46,21 +46,27 @@ fn phong_of(s: Surface, v: vec3f, alpha: f32, m: f32) -> Phong {
 }
 
 /// The integral of `outside` over the angle about the axis, on a great circle whose nearest point has the squared tangent d2. From one
-/// unit vector, cosine and sine of the angle from that point, to another, less than half a turn apart. Gauss and Legendre's four points, over the
-/// tangent of half the angle from the middle, so that no sine is needed.
+/// unit vector, cosine and sine of the angle from that point, to another, less than half a turn apart. Gauss and Legendre's points, four or over a
+/// short arc two, over the tangent of half the angle from the middle, so that no sine is needed.
 fn arc_outside(d2: f32, first: vec2f, last: vec2f, power: f32) -> f32 {
-    let x = array<f32, 4>(-0.8611363116, -0.3399810436, 0.3399810436, 0.8611363116);
-    let w = array<f32, 4>(0.3478548451, 0.6521451549, 0.6521451549, 0.3478548451);
     let middle = normalize(first + last);
-    let quarter = (middle.x * last.y - middle.y * last.x) / (1.0 + dot(middle, last));
-    var sum = 0.0;
-    for (var k = 0; k < 4; k++) {
-        let t = quarter * x[k];
-        let scale = 1.0 / (1.0 + t * t);
-        let cosine = (middle.x * (1.0 - t * t) - 2.0 * middle.y * t) * scale;
-        sum += w[k] * scale * outside(d2 / max(cosine * cosine, 1e-30), power);
+    let cosine = dot(middle, last);
+    let quarter = (middle.x * last.y - middle.y * last.x) / (1.0 + cosine);
+    if cosine > 0.95 {
+        return 2.0 * quarter * pair_outside(d2, middle, quarter * 0.5773502692, power);
     }
-    return 2.0 * quarter * sum;
+    let inner = pair_outside(d2, middle, quarter * 0.3399810436, power);
+    return 2.0 * quarter * (0.6521451549 * inner + 0.3478548451 * pair_outside(d2, middle, quarter * 0.8611363116, power));
+}
+
+/// Its integrand at the angles from the middle with the half tangents t and -t.
+fn pair_outside(d2: f32, middle: vec2f, t: f32, power: f32) -> f32 {
+    let scale = 1.0 / (1.0 + t * t);
+    let ahead = middle.x * (1.0 - t * t);
+    let aside = 2.0 * middle.y * t;
+    let cosines = vec2f(ahead - aside, ahead + aside) * scale;
+    let x = d2 / max(cosines * cosines, vec2f(1e-30));
+    return scale * (outside(x.x, power) + outside(x.y, power));
 }
 
 /// What the edge from p to q in the lobe's frame gives to 2 pi times the share of the lobe within the outline: by Stokes' theorem the integral of what is
