@@ -79,6 +79,11 @@ fn circle_corner(k: u32) -> vec2f {
     return 1.005741237 * vec2f(cos(turn), sin(turn));
 }
 
+/// Direction at the angle 2 atan(t) from the first column toward the second.
+fn out_at(frame: mat3x3f, t: f32) -> vec3f {
+    return (frame[0] * (1.0 - t * t) + frame[1] * (2.0 * t)) / (1.0 + t * t);
+}
+
 // A sphere by its centre's offset c from the origin and its radius, m. A point inside sees what one on the sphere sees.
 
 /// Squared sine of the angle that the sphere's rim makes with its middle.

@@ -9,7 +9,7 @@ struct Phong {
 }
 
 /// What is left of the lobe outside of the cone whose rim has the squared tangent x: (1 + x)^-power = cos^(n + 1).
-fn outside(x: f32, power: f32) -> f32 {
+fn lobe_outside(x: f32, power: f32) -> f32 {
     let rest = 1.0 / (1.0 + x);
     return exp(power * log_rest(x * rest, rest));
 }
@@ -45,7 +45,7 @@ fn phong_of(s: Surface, v: vec3f, alpha: f32, m: f32) -> Phong {
     return lobe;
 }
 
-/// The integral of `outside` over the angle about the axis, on a great circle whose nearest point has the squared tangent d2. From one
+/// The integral of `lobe_outside` over the angle about the axis, on a great circle whose nearest point has the squared tangent d2. From one
 /// unit vector, cosine and sine of the angle from that point, to another, less than half a turn apart. Gauss and Legendre's points, four or over a
 /// short arc two, over the tangent of half the angle from the middle, so that no sine is needed.
 fn arc_outside(d2: f32, first: vec2f, last: vec2f, power: f32) -> f32 {
@@ -66,7 +66,7 @@ fn pair_outside(d2: f32, middle: vec2f, t: f32, power: f32) -> f32 {
     let aside = 2.0 * middle.y * t;
     let cosines = vec2f(ahead - aside, ahead + aside) * scale;
     let x = d2 / max(cosines * cosines, vec2f(1e-30));
-    return scale * (outside(x.x, power) + outside(x.y, power));
+    return scale * (lobe_outside(x.x, power) + lobe_outside(x.y, power));
 }
 
 /// What the edge from p to q in the lobe's frame gives to 2 pi times the share of the lobe within the outline: by Stokes' theorem the integral of what is
@@ -167,7 +167,7 @@ fn share_within(i: u32, s: Surface, lobe: Phong) -> f32 {
         // The edges of so small a light cancel; the lobe is even over it.
         let middle = way.first.xy / way.first.z + way.middle / way.count;
         let x = dot(middle, middle);
-        return min(abs(way.area) * 0.5 * INV_PI * lobe.power * outside(x, lobe.power) / (1.0 + x), 1.0);
+        return min(abs(way.area) * 0.5 * INV_PI * lobe.power * lobe_outside(x, lobe.power) / (1.0 + x), 1.0);
     }
     return clamp(abs(way.sum + edge_inside(way.last, way.first, lobe)) * 0.5 * INV_PI, 0.0, 1.0);
 }

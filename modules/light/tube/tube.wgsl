@@ -116,11 +116,6 @@ fn shape_configuration_factor(i: u32, origin: vec3f, n: vec3f) -> f32 {
     return shape_form_factor(i, origin, transpose(frame_of(n)));
 }
 
-/// Direction from the axis at the angle 2 atan(t) from the line of the side that faces the origin.
-fn out_at(frame: mat3x3f, t: f32) -> vec3f {
-    return (frame[0] * (1.0 - t * t) + frame[1] * (2.0 * t)) / (1.0 + t * t);
-}
-
 /// What a line of the side gives, with the width that it stands for by t.
 fn line_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, t: f32) -> f32 {
     let r = instances[i].radius;
@@ -148,26 +143,31 @@ fn thin_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f, last
     return sum * wide * abs(determinant(local)) * half * INV_PI;
 }
 
-/// Corner k of 26 of the outline: along the circle of one end and back along the other's, over the part that is seen of the side, `seen` to either side; but
-/// at the end `cap` on the far side, behind the cap. A chord over the angle delta loses delta^2 / 12 of the radius in the mean, so corners are that
-/// far out, but those where the lines begin.
-fn outline_corner(i: u32, frame: mat3x3f, c: vec3f, seen: f32, cap: f32, k: u32) -> vec3f {
+/// Corner k of 26 of the outline: along the circle of one end and back along the other's, over the part that is seen of the side; but at the end `cap` on
+/// the far side, behind the cap. A chord over the angle delta loses delta^2 / 12 of the radius in the mean, so its ends are that far out, but those
+/// where the lines begin.
+fn outline_corner(i: u32, frame: mat3x3f, c: vec3f, away: f32, cap: f32, k: u32) -> vec3f {
+    let r = instances[i].radius;
     let end = select(-1.0, 1.0, k < 13u);
-    let step = select(25u - k, k, k < 13u);
-    let half = select(seen, PI - seen, cap == end);
-    let turn = half * (f32(step) / 6.0 - 1.0);
-    let out = instances[i].radius * select(1.0, 1.0 + half * half / 432.0, step > 0u && step < 12u);
-    return c + frame * vec3f(out * select(cos(turn), -cos(turn), cap == end), out * sin(turn), 0.5 * end * instances[i].length);
+    let share = f32(select(25u - k, k, k < 13u)) / 6.0 - 1.0;
+    let last = sqrt(max(away - r, 0.0) / (away + r));
+    var delta = last / (3.0 + 3.0 * last * last * share * share);
+    var at = out_at(frame, last * share);
+    if cap == end {
+        delta = (PI - half_turn(i, away)) / 6.0;
+        at = frame[1] * sin(6.0 * delta * share) - frame[0] * cos(6.0 * delta * share);
+    }
+    let out = r * select(1.0 + delta * delta / 12.0, 1.0, abs(share) == 1.0);
+    return c + at * out + frame[2] * (0.5 * end * instances[i].length);
 }
 
 /// The side of a thick tube by its outline.
 fn outline_factor(i: u32, frame: mat3x3f, c: vec3f, away: f32, local: mat3x3f) -> f32 {
-    let seen = half_turn(i, away);
     var rim = vec2f(0.0);
     var sum = 0.0;
-    var at = local * outline_corner(i, frame, c, seen, 0.0, 25u);
+    var at = local * outline_corner(i, frame, c, away, 0.0, 25u);
     for (var k = 0u; k < 26u; k++) {
-        let next = local * outline_corner(i, frame, c, seen, 0.0, k);
+        let next = local * outline_corner(i, frame, c, away, 0.0, k);
         sum += edge_above(at, next, next - at, &rim);
         at = next;
     }
@@ -218,8 +218,7 @@ fn shape_toward(i: u32, origin: vec3f, along: vec3f) -> vec3f {
 /// From within the radius only the cap is seen.
 fn shape_corners(i: u32, origin: vec3f) -> u32 {
     let c = instances[i].position - origin;
-    let is_aside = length(cross(c, axis(i))) > instances[i].radius;
-    return select(select(0u, CIRCLE_CORNERS, params.caps && cap_side(i, c) != 0.0), 26u, is_aside);
+    return select(select(0u, CIRCLE_CORNERS, params.caps && cap_side(i, c) != 0.0), 26u, length(cross(c, axis(i))) > instances[i].radius);
 }
 
 fn shape_corner(i: u32, origin: vec3f, k: u32) -> vec3f {
@@ -228,7 +227,7 @@ fn shape_corner(i: u32, origin: vec3f, k: u32) -> vec3f {
     let away = -dot(c, frame[0]);
     let cap = select(0.0, cap_side(i, c), params.caps);
     if away > instances[i].radius {
-        return outline_corner(i, frame, c, half_turn(i, away), cap, k);
+        return outline_corner(i, frame, c, away, cap, k);
     }
     return c + frame * vec3f(circle_corner(k) * instances[i].radius, 0.5 * cap * instances[i].length);
 }
