@@ -8,10 +8,10 @@ struct Phong {
     reach2: f32,
 }
 
-/// What is left of the lobe outside of the cone whose rim has the squared tangent x: (1 + x)^-power = cos^(n + 1).
-fn lobe_outside(x: f32, power: f32) -> f32 {
+/// Logarithm of what is left of the lobe outside of the cone whose rim has the squared tangent x: of (1 + x)^-power = cos^(n + 1).
+fn log_outside(x: f32, power: f32) -> f32 {
     let rest = 1.0 / (1.0 + x);
-    return exp(power * log_rest(x * rest, rest));
+    return power * log_rest(x * rest, rest);
 }
 
 /// The lobe of GGX facets as a Phong lobe: its axis between the mirrored view and the normal, its two widths.
@@ -45,28 +45,41 @@ fn phong_of(s: Surface, v: vec3f, alpha: f32, m: f32) -> Phong {
     return lobe;
 }
 
-/// The integral of `lobe_outside` over the angle about the axis, on a great circle whose nearest point has the squared tangent d2. From one
-/// unit vector, cosine and sine of the angle from that point, to another, less than half a turn apart. Gauss and Legendre's points, four or over a
-/// short arc two, over the tangent of half the angle from the middle, so that no sine is needed.
-fn arc_outside(d2: f32, first: vec2f, last: vec2f, power: f32) -> f32 {
-    let middle = normalize(first + last);
-    let cosine = dot(middle, last);
-    let quarter = (middle.x * last.y - middle.y * last.x) / (1.0 + cosine);
-    if cosine > 0.95 {
-        return 2.0 * quarter * pair_outside(d2, middle, quarter * 0.5773502692, power);
-    }
-    let inner = pair_outside(d2, middle, quarter * 0.3399810436, power);
-    return 2.0 * quarter * (0.6521451549 * inner + 0.3478548451 * pair_outside(d2, middle, quarter * 0.8611363116, power));
+/// What of the lobe is inside of the cone through a point of a line whose nearest point has the squared tangent d2, times 1 + 1 / (power x): between 1 and
+/// 1.3 wherever the point is. c2 = d2 + 1 / power; `slope` is the point's distance from the nearest one, by c.
+fn level_inside(d2: f32, c2: f32, slope: f32, power: f32) -> f32 {
+    let x = max(d2 + c2 * slope * slope, 1e-24);
+    let left = log_outside(x, power);
+    return -left * exprel(left) * (1.0 + 1.0 / (power * x));
 }
 
-/// Its integrand at the angles from the middle with the half tangents t and -t.
-fn pair_outside(d2: f32, middle: vec2f, t: f32, power: f32) -> f32 {
-    let scale = 1.0 / (1.0 + t * t);
-    let ahead = middle.x * (1.0 - t * t);
-    let aside = 2.0 * middle.y * t;
-    let cosines = vec2f(ahead - aside, ahead + aside) * scale;
-    let x = d2 / max(cosines * cosines, vec2f(1e-30));
-    return scale * (lobe_outside(x.x, power) + lobe_outside(x.y, power));
+/// The same at the angles from `middle` with the half tangents t and -t, weighted with the width that they have there.
+fn pair_inside(d2: f32, c2: f32, middle: vec2f, t: f32, power: f32) -> f32 {
+    let level = middle * (1.0 - t * t);
+    let tilt = 2.0 * t * vec2f(-middle.y, middle.x);
+    let after = level + tilt;
+    let before = level - tilt;
+    let sum = level_inside(d2, c2, after.y / max(after.x, 1e-9), power) + level_inside(d2, c2, before.y / max(before.x, 1e-9), power);
+    return sum / (1.0 + t * t);
+}
+
+/// The integral of what of the lobe is inside over the angle phi about the axis, along a line from one unit vector, cosine and sine of the angle from its
+/// nearest point, to another. With the distance d of that point, tan(phi) = c / d tan(psi) and c^2 = d^2 + 1 / power it is d / c times that of `level_inside` over
+/// psi: Gauss and Legendre's points, four or over a short way two, by the tangent of half the angle, so that no sine is needed.
+fn line_inside(d: f32, first: vec2f, last: vec2f, power: f32) -> f32 {
+    let d2 = d * d;
+    let c2 = d2 + 1.0 / power;
+    let c = sqrt(c2);
+    let end = normalize(last * vec2f(c, d));
+    let middle = normalize(normalize(first * vec2f(c, d)) + end);
+    let cosine = dot(middle, end);
+    let quarter = (middle.x * end.y - middle.y * end.x) / (1.0 + cosine);
+    let scale = 2.0 * quarter * d / c;
+    if cosine > 0.95 {
+        return scale * pair_inside(d2, c2, middle, quarter * 0.5773502692, power);
+    }
+    let inner = pair_inside(d2, c2, middle, quarter * 0.3399810436, power);
+    return scale * (0.6521451549 * inner + 0.3478548451 * pair_inside(d2, c2, middle, quarter * 0.8611363116, power));
 }
 
 /// What the edge from p to q in the lobe's frame gives to 2 pi times the share of the lobe within the outline: by Stokes' theorem the integral of what is
@@ -79,7 +92,8 @@ fn edge_inside(p: vec3f, q: vec3f, lobe: Phong) -> f32 {
         sum = 2.0 * PI;
     }
     let tilt = max(length(normal.xy), 1e-30);
-    let d = abs(normal.z) / tilt;
+    // Below 1e-12 the axis is on the edge.
+    let d = max(abs(normal.z) / tilt, 1e-12);
     // Cosine of the angle from the nearest point to where the edge leaves the lobe.
     let leave = d * inverseSqrt(lobe.reach2);
     if leave >= 1.0 || turn == 0.0 {
@@ -101,11 +115,8 @@ fn edge_inside(p: vec3f, q: vec3f, lobe: Phong) -> f32 {
     if first.y >= last.y {
         return turn * sum;
     }
-    if first.y < 0.0 && last.y > 0.0 {
-        let level = vec2f(1.0, 0.0);
-        return turn * (sum - arc_outside(d * d, first, level, lobe.power) - arc_outside(d * d, level, last, lobe.power));
-    }
-    return turn * (sum - arc_outside(d * d, first, last, lobe.power));
+    let angle = angle_of(max(first.x * last.y - first.y * last.x, 0.0), dot(first, last));
+    return turn * (sum - angle + line_inside(d, first, last, lobe.power));
 }
 
 /// The way along the outline, as far as it is above the horizon.
@@ -163,11 +174,11 @@ fn share_within(i: u32, s: Surface, lobe: Phong) -> f32 {
     if way.count < 3.0 {
         return 0.0;
     }
-    if way.extent2 * lobe.power < 3e-4 {
+    if way.extent2 * lobe.power < 1e-2 {
         // The edges of so small a light cancel; the lobe is even over it.
         let middle = way.first.xy / way.first.z + way.middle / way.count;
         let x = dot(middle, middle);
-        return min(abs(way.area) * 0.5 * INV_PI * lobe.power * lobe_outside(x, lobe.power) / (1.0 + x), 1.0);
+        return min(abs(way.area) * 0.5 * INV_PI * lobe.power * exp(log_outside(x, lobe.power)) / (1.0 + x), 1.0);
     }
     return clamp(abs(way.sum + edge_inside(way.last, way.first, lobe)) * 0.5 * INV_PI, 0.0, 1.0);
 }
