@@ -365,9 +365,17 @@ fn a_sinking_outline_fades() {
                 })
             };
             let rows: Vec<Json> = (0..=STEPS).map(row).collect();
-            let got = evaluated(&light(shape, r#"(module: "split", fill: {"specular": "phong-lobe"})"#), &rows, false);
+            let got = evaluated(
+                &light(shape, r#"(module: "split", fill: {"specular": "phong-lobe"})"#),
+                &rows,
+                false,
+            );
             let most = got.iter().copied().fold(0.0, f64::max);
-            assert!(most > 1e-6 && got[STEPS] == 0.0, "{shape} of {size}, {alpha}: {most}, at last {}", got[STEPS]);
+            assert!(
+                most > 1e-6 && got[STEPS] == 0.0,
+                "{shape} of {size}, {alpha}: {most}, at last {}",
+                got[STEPS]
+            );
             for (step, pair) in got.windows(2).enumerate() {
                 assert!(
                     (pair[0] - pair[1]).abs() <= 0.05 * most,
