@@ -10,7 +10,10 @@
 
 pub mod albedo;
 pub mod appearance;
+pub mod area;
+pub mod cosines;
 pub mod display;
+pub mod drawn;
 pub mod lights;
 pub mod lobes;
 pub mod quadrature;

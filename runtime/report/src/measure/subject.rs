@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 use serde_json::{Map, Value as Json, json};
 use shadewright_compiler::catalog::Signature;
 use shadewright_compiler::manifest::{ModuleManifest, Param, Typed, Value, typed};
-use shadewright_compiler::reflect::Layout;
+use shadewright_compiler::reflect::{Fill, Layout};
 use shadewright_compiler::{Catalog, Recipe};
 use shadewright_evaluate::Number;
 use shadewright_modules::oracles::{self, At, Truth};
@@ -97,7 +97,7 @@ impl<'a> Subject<'a> {
                         fitted.insert(name.clone(), Json::Object(kept));
                     }
                 }
-                "instances" if self.alternative.root.manifest.instances.is_empty() => {}
+                "instances" if !self.reads_instances() => {}
                 "instances" => {
                     fitted.insert(name.clone(), value.clone());
                 }
@@ -109,6 +109,12 @@ impl<'a> Subject<'a> {
             }
         }
         Json::Object(fitted)
+    }
+
+    /// Whether some module of the recipe has instances that the function reads.
+    fn reads_instances(&self) -> bool {
+        let bindings = &self.probe.program().reflection().bindings;
+        bindings.iter().any(|binding| matches!(binding.fill, Fill::Instances { .. }))
     }
 
     /// Packs rows.

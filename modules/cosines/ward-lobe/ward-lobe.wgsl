@@ -1,0 +1,11 @@
+var<storage> table: array<vec2f, 3072>;
+
+/// As `table.rs` made it.
+fn cosine_pair(k: u32) -> vec2f {
+    return table[k];
+}
+
+/// Ward's BRDF is scaled, not refracted.
+fn cosine_fresnel() -> f32 {
+    return 0.0;
+}

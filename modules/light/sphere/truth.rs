@@ -1,0 +1,24 @@
+//! Glowing spheres over white paper.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use crate::oracles::{At, Truth, area};
+
+pub(super) const TRUTHS: &[(&str, Truth)] = &[("light", light)];
+
+/// Alone, with an albedo of 1, a surface has the illuminance over pi.
+fn light(at: &At) -> Vec<f64> {
+    let mut sum = DVec3::ZERO;
+    for i in 0..at.instances.len() {
+        let c = at.instance_vector(i, "position") - at.vector("s.position");
+        let n = at.vector("s.normal");
+        let radius = at.instance(i, "radius");
+        let area = (4.0 * PI * radius * radius).max(4e-12 * PI);
+        let factor = area::sphere(c, radius, n.normalize());
+        let radiance = area::luminance(at.instance(i, "luminance"), at.instance(i, "flux"), area);
+        sum += at.instance_vector(i, "color") * (radiance * factor);
+    }
+    sum.to_array().to_vec()
+}

@@ -1,0 +1,130 @@
+// What an area light offers to the modules in its slot `area`. i is the light's index, `origin` the shaded point in world space, m. The neutral
+// shape, for whoever is probed alone: a sphere of 0.5 m around (0, 0, 2) with 1 cd/m2.
+
+/// A unit direction toward the shape with the density `shape_pdf`, for u uniform in [0, 1)^2. It may miss a shape with a ragged rim: such a
+/// sample counts, with the radiance 0.
+fn shape_sample(i: u32, origin: vec3f, u: vec2f) -> vec3f {
+    return sphere_sample(shape_centre(i) - origin, shape_radius(i), u);
+}
+
+/// Density over solid angle with which `shape_sample` draws the unit direction l, 1/sr; 0 where it never does.
+fn shape_pdf(i: u32, origin: vec3f, l: vec3f) -> f32 {
+    return sphere_pdf(shape_centre(i) - origin, shape_radius(i), l);
+}
+
+/// Luminance of the shape from the origin along l, cd/m2 per channel: 0 where l misses it, or meets a side that is dark.
+fn shape_radiance(i: u32, origin: vec3f, l: vec3f) -> vec3f {
+    return vec3f(select(0.0, 1.0, shape_pdf(i, origin, l) > 0.0));
+}
+
+/// Luminance of the shape toward the origin where it is seen at all, cd/m2 per channel.
+fn shape_luminance(i: u32) -> vec3f {
+    return vec3f(1.0);
+}
+
+/// Illuminance over pi times luminance of a small plane at the origin with the unit normal n: 1 where the shape covers its whole sky. What
+/// is below the plane's horizon does not count.
+fn shape_configuration_factor(i: u32, origin: vec3f, n: vec3f) -> f32 {
+    let c = shape_centre(i) - origin;
+    let per_distance = inverseSqrt(max(dot(c, c), 1e-30));
+    return sphere_factor(shape_radius(i) * per_distance, dot(c, n) * per_distance, length(cross(c, n)) * per_distance);
+}
+
+/// The same of the plane z = 0, after the linear map `local` of all offsets from the origin: with the rotation to a surface's frame it is the
+/// configuration factor, with a further map the integral of a linearly transformed cosine (Heitz et al. 2016).
+fn shape_form_factor(i: u32, origin: vec3f, local: mat3x3f) -> f32 {
+    return mapped_sphere_factor(shape_centre(i) - origin, shape_radius(i), local);
+}
+
+/// Offset from the origin to the point of the shape that is nearest to the ray from there along the unit direction `along`, m.
+fn shape_toward(i: u32, origin: vec3f, along: vec3f) -> vec3f {
+    return sphere_toward(shape_centre(i) - origin, shape_radius(i), along);
+}
+
+/// Middle of the shape, m.
+fn shape_centre(i: u32) -> vec3f {
+    return vec3f(0.0, 0.0, 2.0);
+}
+
+/// Radius of the disk or sphere of about its size, m.
+fn shape_radius(i: u32) -> f32 {
+    return 0.5;
+}
+
+/// Area that the shape shows in the direction of the origin, m2: times the luminance it is the luminous intensity of the light as a point.
+/// 0 from behind.
+fn shape_projected_area(i: u32, origin: vec3f) -> f32 {
+    return PI * shape_radius(i) * shape_radius(i);
+}
+
+// A sphere by its centre's offset c from the origin and its radius, m. A point inside sees what one on the sphere sees.
+
+/// Squared sine of the angle that the sphere's rim makes with its middle.
+fn sphere_sine_squared(c: vec3f, radius: f32) -> f32 {
+    return min(radius * radius / max(dot(c, c), 1e-30), 1.0);
+}
+
+/// 1 - cos of that angle, without subtracting.
+fn sphere_cap(c: vec3f, radius: f32) -> f32 {
+    let sine2 = sphere_sine_squared(c, radius);
+    return sine2 / (1.0 + sqrt(1.0 - sine2));
+}
+
+/// A direction in the sphere's cone, by solid angle.
+fn sphere_sample(c: vec3f, radius: f32, u: vec2f) -> vec3f {
+    let fall = u.x * sphere_cap(c, radius);
+    let across = sqrt(fall * (2.0 - fall));
+    // Of angles beyond pi WGSL promises no sine.
+    let turn = PI * (2.0 * u.y - 1.0);
+    return frame_of(unit_or(c, vec3f(0.0, 0.0, 1.0))) * vec3f(across * cos(turn), across * sin(turn), 1.0 - fall);
+}
+
+/// 1 over the cone's solid angle in it, 0 elsewhere, 1/sr. The sine tells in a narrow cone what the cosine cannot.
+fn sphere_pdf(c: vec3f, radius: f32, l: vec3f) -> f32 {
+    let middle = unit_or(c, vec3f(0.0, 0.0, 1.0));
+    let across = cross(middle, l);
+    let is_in = dot(middle, l) >= 0.0 && dot(across, across) <= sphere_sine_squared(c, radius);
+    return select(0.0, 0.5 * INV_PI / max(sphere_cap(c, radius), 1e-30), is_in);
+}
+
+/// Form factor of the sphere after the linear map `local`: of the ellipse that its rim becomes.
+fn mapped_sphere_factor(c: vec3f, radius: f32, local: mat3x3f) -> f32 {
+    // Nearer than 1e-6 of the radius the rim would leave for infinity.
+    let sine2 = min(sphere_sine_squared(c, radius), 0.999998);
+    let frame = frame_of(unit_or(c, vec3f(0.0, 0.0, 1.0)));
+    let rim = sqrt(sine2 / (1.0 - sine2));
+    return ellipse_factor(local * frame[2], local * (frame[0] * rim), local * (frame[1] * rim));
+}
+
+/// The point of the sphere nearest to the ray along the unit direction `along` (Karis 2013, eqs. 11 and 12); the centre's own depth where the ray hits.
+fn sphere_toward(c: vec3f, radius: f32, along: vec3f) -> vec3f {
+    let to_ray = dot(c, along) * along - c;
+    let distance = length(to_ray);
+    return c + to_ray * min(radius / max(distance, 1e-15), 1.0);
+}
+
+// A flat shape.
+
+/// Columns: the directions of width and height in the plane, and its normal. What of `right` is along the normal does not count; where nothing is
+/// left any direction will do.
+fn plane_axes(direction: vec3f, right: vec3f) -> mat3x3f {
+    let normal = unit_or(direction, vec3f(0.0, 0.0, 1.0));
+    let width = unit_or(right - normal * dot(normal, right), frame_of(normal)[0]);
+    return mat3x3f(width, cross(normal, width), normal);
+}
+
+/// 1 where the side that is seen shines: the front, seen by a positive cosine, or either.
+fn plane_shines(cosine: f32, two_sided: bool) -> f32 {
+    return select(0.0, 1.0, select(cosine, abs(cosine), two_sided) > 0.0);
+}
+
+/// Distance along l to the plane with the offset c, both in the plane's axes; 0 where l never meets it.
+fn plane_distance(c: vec3f, l: vec3f) -> f32 {
+    return select(0.0, c.z / l.z, c.z * l.z > 0.0);
+}
+
+/// Where the ray along `along` meets the plane with the offset c, both in the plane's axes, from its middle. A ray that leaves the plane behind meets
+/// it nowhere: it is taken to go along the plane then, and to meet it far away.
+fn plane_track(c: vec3f, along: vec3f) -> vec2f {
+    return along.xy * (abs(c.z) / max(along.z * sign(c.z), 1e-6)) - c.xy;
+}
