@@ -1,4 +1,4 @@
-//! The command `sheet`: one scene with every choice of a space, as one picture.
+//! The command `sheet`: one scene with every choice of a space, as one picture, and beside the true one.
 #![allow(clippy::expect_used, clippy::unwrap_used)]
 
 mod support;
@@ -61,6 +61,41 @@ fn each_tile_is_what_render_draws() {
             }
         }
     }
+}
+
+/// Catches a truth that stands in the wrong column or is drawn with the choice, an error of another pair, and a choice that is not the truth without one.
+#[test]
+fn a_sheet_against_the_truth_has_three_columns() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
+    let sheet = path("sheet.png");
+    let ran = good(&[
+        "sheet",
+        SCENE,
+        "--each",
+        r#"materials.ball.brdf=["lambert", "ward"]"#,
+        "--against",
+        r#"(module: "brdf/ward")"#,
+        "--size",
+        SIZE,
+        "-o",
+        &sheet,
+    ]);
+    let lines: Vec<String> = ran.text().lines().map(str::to_owned).collect();
+    assert_eq!(lines.len(), 2, "{lines:?}");
+    assert!(lines[0].starts_with("lambert: RMS ") && !lines[0].contains("RMS 0 %"), "{lines:?}");
+    assert_eq!(lines[1], "ward: RMS 0 %, largest 0 %");
+    let sheet = picture(Path::new(&sheet));
+    assert_eq!([sheet.width(), sheet.height()], [3 * (48 + GAP) + GAP, 2 * (40 + STRIP) + GAP]);
+    let tile = |column: u32, row: u32| {
+        let [x, y] = [GAP + column * (48 + GAP), GAP + row * (40 + STRIP)];
+        image::imageops::crop_imm(&sheet, x, y, 48, 40).to_image()
+    };
+    assert_eq!(tile(1, 0), tile(1, 1));
+    assert_eq!(tile(0, 1), tile(1, 1));
+    assert_ne!(tile(0, 0), tile(1, 0));
+    assert!(tile(2, 1).pixels().all(|pixel| pixel.0 == [0; 3]), "no error");
+    assert!(tile(2, 0).pixels().any(|pixel| pixel.0 != [0; 3]), "an error");
 }
 
 /// Catches the list of models that loses one: a BRDF or a diffuse part that the library has and the contact sheet of all models doesn't show.

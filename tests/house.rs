@@ -229,6 +229,7 @@ const HOMONYMS: &[(&str, &str, &str)] = &[
     ("runtime/src", "none", "in messages: nothing is there"),
     ("runtime/src", "merl", "a format of files"),
     ("runtime/src", "rgl", "a format of files"),
+    ("runtime/src", "tube", "a field of a torus"),
     ("runtime/report/src", "hard", "a field of experiments"),
     ("runtime/report/src", "light", "a colour of the page's theme"),
     ("runtime/report/src", "diffuse", "a member of the interface's surface"),

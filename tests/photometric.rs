@@ -153,7 +153,6 @@ fn bad_files_are_located() {
   |
 3 | lights: [(module: \"photometric\", files: {\"profile\": \"bad.ies\"})])
   |                                                     ^^^^^^^^^ line 6: a vertical angle is 45, but the one before is 90
-
 "
     );
     assert!(said("tilt.ies").contains("line 3: `TILT=INCLUDE`: only `TILT=NONE` is taken"));

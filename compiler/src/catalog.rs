@@ -130,6 +130,14 @@ impl Catalog {
         self.find(name, None).map_err(Report::from)
     }
 
+    /// The module that this name means in a slot: of several with the name the one that fits.
+    ///
+    /// # Errors
+    /// Those of [`Catalog::module`]. A module that does not fit is none.
+    pub fn module_for(&self, interface: &str, name: &str) -> Result<&Arc<Module>, Report> {
+        self.find(name, Some((interface, ""))).or_else(|_| self.module(name))
+    }
+
     /// The module that a node of a recipe names, for a slot (interface and slot name) or as a root.
     pub(crate) fn module_at(&self, name: &str, slot: Option<(&str, &str)>, place: impl FnOnce() -> Place) -> Result<Arc<Module>, Report> {
         self.find(name, slot).map(Arc::clone).map_err(|mut diagnostic| {

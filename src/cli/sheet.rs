@@ -7,8 +7,8 @@ use clap::Args;
 use indexmap::IndexMap;
 use shadewright::compiler::manifest::{Locator, Step};
 use shadewright::compiler::space::{Permutation, Space};
-use shadewright::report::write::{Tile, sheet, sheet_size};
-use shadewright::runtime::frame::Renderer;
+use shadewright::report::write::{Tile, difference, sheet, sheet_size};
+use shadewright::runtime::frame::{Frame, Renderer};
 use shadewright::runtime::gpu::Gpu;
 use shadewright::runtime::scene::SceneFile;
 
@@ -42,6 +42,9 @@ pub struct Options {
     /// Pictures in a row
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     columns: Option<u16>,
+    /// What stands in the place of `--each` in the true picture: every choice becomes a row of its picture, the true one, and its error
+    #[arg(long, value_name = "VALUE", conflicts_with = "columns")]
+    against: Option<String>,
     /// Change a value of the scene first, such as `lights[0].fields.intensity=900 lm`
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
@@ -68,17 +71,26 @@ pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
             "{number} pictures are more than a sheet holds, {MOST_TILES}"
         )));
     }
+    let mut variants: Vec<(String, SceneFile)> = (0..number).map(|index| variant(&scene, &axes, index)).collect::<Result<_, _>>()?;
+    let truth = match (&options.against, axes.as_slice()) {
+        (None, _) => None,
+        (Some(value), [axis]) => Some((format!("true: {}", bare(module(value))), scene.set(&axis.path, value)?)),
+        (Some(_), _) => return Err(Failure::Usage("--against: there is more than one --each to put it in the place of".to_owned())),
+    };
+    let is_compared = truth.is_some();
+    variants.splice(0..0, truth);
     // Rows of the last axis where there are several.
     let across = match axes.as_slice() {
+        _ if is_compared => 3,
         [.., _, last] => last.choices.len(),
         _ => (number as f64).sqrt().ceil() as usize,
     };
     let columns = options.columns.map_or(across, usize::from).max(1);
-    let variants: Vec<(String, SceneFile)> = (0..number).map(|index| variant(&scene, &axes, index)).collect::<Result<_, _>>()?;
+    let tiles = if is_compared { 3 * number } else { number };
     let mut frames = Vec::new();
     for (name, scene) in variants {
         let frame = scene.frame(&context.catalog, options.size)?;
-        let [width, height] = sheet_size(number, frame.size, columns);
+        let [width, height] = sheet_size(tiles, frame.size, columns);
         if width * height > MOST_PIXELS {
             return Err(Failure::message(format!(
                 "a sheet of {width} x {height} pixels is larger than {} million: `--size` makes its pictures smaller",
@@ -87,29 +99,73 @@ pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
         }
         frames.push((name, frame));
     }
-    let Some(size) = frames.first().map(|(_, frame)| frame.size) else {
-        return Err(Failure::message("there is nothing to choose from"));
+    let size = match frames.first() {
+        Some((_, frame)) if number > 0 => frame.size,
+        _ => return Err(Failure::message("there is nothing to choose from")),
     };
-    let gpu = Gpu::headless()?;
-    let mut renderer = Renderer::new(&gpu, context.catalog);
-    let watch = Watch::new(number as u128, "pictures");
-    let mut tiles = Vec::new();
-    for (name, frame) in frames {
-        if watch.cancel().load(Ordering::Relaxed) {
-            return Err(Failure::Interrupted(format!("{} of {number} pictures were drawn", tiles.len())));
-        }
-        let Some(pixels) = renderer.render(&frame)?.read_display(&gpu)? else {
-            return Err(Failure::message("the scene has no `display` pass, so there is nothing to show"));
-        };
-        tiles.push(Tile { name, pixels });
-        watch.step();
-    }
-    watch.finish();
+    let drawn = draw(context, frames, is_compared)?;
+    let (tiles, said) = if is_compared {
+        compared(drawn)
+    } else {
+        (drawn.into_iter().map(|drawn| drawn.tile).collect(), format!("{number} pictures"))
+    };
     let picture = sheet(&tiles, size, columns).map_err(|error| Failure::message(error.to_string()))?;
     let mut outputs = Outputs::default();
     outputs.stage(&options.output, &picture)?;
     outputs.commit()?;
-    say(&format!("{number} pictures"))
+    say(&said)
+}
+
+/// A picture as it is shown and, where pictures are compared, before it was.
+struct Drawn {
+    tile: Tile,
+    hdr: Vec<[f32; 4]>,
+}
+
+/// Draws all frames.
+fn draw(context: Context, frames: Vec<(String, Frame)>, is_compared: bool) -> Result<Vec<Drawn>, Failure> {
+    let gpu = Gpu::headless()?;
+    let mut renderer = Renderer::new(&gpu, context.catalog);
+    let number = frames.len();
+    let watch = Watch::new(number as u128, "pictures");
+    let mut drawn = Vec::new();
+    for (name, frame) in frames {
+        if watch.cancel().load(Ordering::Relaxed) {
+            return Err(Failure::Interrupted(format!("{} of {number} pictures were drawn", drawn.len())));
+        }
+        let targets = renderer.render(&frame)?;
+        let Some(pixels) = targets.read_display(&gpu)? else {
+            return Err(Failure::message("the scene has no `display` pass, so there is nothing to show"));
+        };
+        let hdr = if is_compared { targets.read_hdr(&gpu)? } else { Vec::new() };
+        drawn.push(Drawn { tile: Tile { name, pixels }, hdr });
+        watch.step();
+    }
+    watch.finish();
+    Ok(drawn)
+}
+
+/// A row for each picture after the first, which is the true one; and their errors in words.
+fn compared(drawn: Vec<Drawn>) -> (Vec<Tile>, String) {
+    let mut rows = drawn.into_iter();
+    let Some(truth) = rows.next() else {
+        return (Vec::new(), String::new());
+    };
+    let (mut tiles, mut said) = (Vec::new(), Vec::new());
+    for Drawn { tile, hdr } in rows {
+        let error = difference(&hdr, &truth.hdr);
+        let summary = error.summary();
+        said.push(format!("{}: {summary}", tile.name));
+        tiles.extend([
+            tile,
+            truth.tile.clone(),
+            Tile {
+                name: format!("error: {summary}"),
+                pixels: error.pixels,
+            },
+        ]);
+    }
+    (tiles, said.join("\n"))
 }
 
 /// One place and its choices, as typed.
@@ -164,8 +220,18 @@ fn name_of(permutation: &Permutation) -> String {
     let root = permutation.recipe.root.module.as_str();
     let all = std::iter::once(root).chain(chosen.into_values());
     // The place in the scene says the category.
-    let bare = all.map(|name| name.rsplit('/').next().unwrap_or(name));
-    bare.collect::<Vec<_>>().join(", ")
+    all.map(bare).collect::<Vec<_>>().join(", ")
+}
+
+/// The module of a recipe as typed, or all of it.
+fn module(typed: &str) -> &str {
+    let module = Locator::new(typed).find(&[Step::Key("module")]);
+    module.and_then(|at| typed.get(at)).unwrap_or(typed).trim().trim_matches('"')
+}
+
+/// A module's name without its category.
+fn bare(name: &str) -> &str {
+    name.rsplit('/').next().unwrap_or(name)
 }
 
 /// The scene with one choice of each axis, the last axis changing fastest, and what they are called.

@@ -38,6 +38,19 @@ const OPEN: &[(&str, f64, &str)] = &[
         0.6,
         "a sum of thousands of terms, in one of which a branch hangs on a rounding",
     ),
+    (
+        "light/disk light",
+        0.6,
+        "outlines are cut at the horizon and at the middle of the polynomials of angles: which side a rounded number is on is left open; \
+         `cases.ron` and `area_lights` hold the numbers themselves, and both sides meet there",
+    ),
+    ("light/polygon light", 1.0, "the same, edge by edge"),
+    (
+        "light/rectangle light",
+        1.0,
+        "the same, and of a square's sides, which alone are drawn here, either may be the longer one",
+    ),
+    ("light/tube light", 0.5, "the same, line by line"),
 ];
 /// Largest share of numbers of a function of which nothing can be said.
 const MOST_OPEN: f64 = 0.3;

@@ -10,7 +10,7 @@ use shadewright_runtime::probe::{Probe, Table, time};
 
 use crate::data::{Provenance, Report, Results, Row, Time};
 use crate::experiment::{Experiment, Metric, TruthSource};
-use crate::measure::{Effort, MeasureError, Measured, OnDevice, Subject, configurations, key, mark_dominated, measure};
+use crate::measure::{Effort, Known, MeasureError, Measured, OnDevice, Subject, configurations, key, mark_dominated, measure};
 
 /// Repetitions of a timing.
 const REPETITIONS: usize = 15;
@@ -154,13 +154,14 @@ impl Run<'_> {
     }
 
     fn experiment(&mut self, experiment: &Experiment) -> Result<(), ReportError> {
+        let known = Known::default();
         let mut subjects = Vec::new();
         let mut rows: Vec<Row> = Vec::new();
         let mut hard = 0;
         for alternative in &experiment.alternatives {
             let name = format!("{}: {}", experiment.name, alternative.label);
             self.step(&name)?;
-            let measured = Subject::new(self.catalog, experiment, alternative).and_then(|subject| {
+            let measured = Subject::new(self.catalog, experiment, alternative, &known).and_then(|subject| {
                 let found = self.row(&subject)?;
                 Ok((subject, found))
             });
@@ -181,7 +182,10 @@ impl Run<'_> {
         let baseline = experiment.declared.baseline.clone();
         let baseline = baseline.or_else(|| rows.first().map(|row| row.label.clone())).unwrap_or_default();
         self.times(&subjects, &mut rows, &baseline)?;
-        let comparable = matches!(experiment.declared.truth, TruthSource::Closed(_) | TruthSource::Reference(_));
+        let comparable = matches!(
+            experiment.declared.truth,
+            TruthSource::Closed(_) | TruthSource::Reference(_) | TruthSource::Sampled(_)
+        );
         if comparable {
             mark_dominated(&mut rows);
         }
@@ -320,6 +324,7 @@ fn truth_name(truth: &TruthSource) -> String {
         TruthSource::Own => "closed form of each module".to_owned(),
         TruthSource::Closed(folder) => format!("closed form of `{folder}`"),
         TruthSource::Reference(node) => format!("`{}` in double precision", node.module),
+        TruthSource::Sampled(node) => format!("`{}` in double precision, sampled", node.module),
         TruthSource::Itself => "none: the formula itself in double precision".to_owned(),
     }
 }

@@ -32,7 +32,11 @@ impl<'a> Examiner<'a> {
 
     /// The module of this name.
     pub(super) fn module(&mut self, name: &str, path: &[Step]) -> Option<Arc<Module>> {
-        match self.catalog.module(name) {
+        self.found(self.catalog.module(name), path)
+    }
+
+    fn found(&mut self, found: Result<&Arc<Module>, Report>, path: &[Step]) -> Option<Arc<Module>> {
+        match found {
             Ok(module) => Some(Arc::clone(module)),
             Err(report) => {
                 let span = self.parsed.places.find_near(path);
@@ -51,7 +55,9 @@ impl<'a> Examiner<'a> {
     /// Checks a choice that stands in a slot of this interface, and all below it.
     pub(super) fn choice(&mut self, choice: &Choice, interface: Option<&str>, path: &[Step]) {
         let named = join(path, &[Step::Key("module")]);
-        let Some(module) = self.module(&choice.module, &named) else {
+        let catalog = self.catalog;
+        let found = interface.map_or_else(|| catalog.module(&choice.module), |interface| catalog.module_for(interface, &choice.module));
+        let Some(module) = self.found(found, &named) else {
             return;
         };
         if let Some(interface) = interface

@@ -43,7 +43,7 @@ pub(super) fn lay(examiner: &mut Examiner, decl: &GltfDecl, material: &Material,
                 let Some(mut standing) = standing(slot, declared, look, said) else {
                     continue;
                 };
-                if replace(&mut standing, &module, examiner.catalog, DEPTH) {
+                if replace(&mut standing, &declared.interface, &module, examiner.catalog, DEPTH) {
                     look.insert(slot.clone(), standing);
                 }
             }
@@ -78,15 +78,17 @@ fn standing(name: &str, slot: &Slot, look: &Look, said: &Look) -> Option<Choices
     chosen.or_else(|| slot.default.as_ref().map(choices_of))
 }
 
-/// Puts the module into all slots of its category below these choices; whether there are any.
-fn replace(choices: &mut Choices, module: &Module, catalog: &Catalog, depth: usize) -> bool {
+/// Puts the module into all slots of its category below these choices for a slot of the interface; whether there are any.
+fn replace(choices: &mut Choices, interface: &str, module: &Module, catalog: &Catalog, depth: usize) -> bool {
     let all = match choices {
         Choices::One(one) => std::slice::from_mut(&mut **one),
         Choices::Many(many) => many.as_mut_slice(),
     };
     let mut found = false;
     for choice in all {
-        let Ok(known) = catalog.module(&choice.module) else { continue };
+        let Ok(known) = catalog.module_for(interface, &choice.module) else {
+            continue;
+        };
         for (name, slot) in &known.manifest.slots {
             if slot.interface == module.category {
                 let replacement = Choices::One(Box::new(Choice::new(full_name(module))));
@@ -95,7 +97,7 @@ fn replace(choices: &mut Choices, module: &Module, catalog: &Catalog, depth: usi
             } else if depth > 0 {
                 let below = choice.fill.get(name).cloned().or_else(|| slot.default.as_ref().map(choices_of));
                 let Some(mut below) = below else { continue };
-                if replace(&mut below, module, catalog, depth - 1) {
+                if replace(&mut below, &slot.interface, module, catalog, depth - 1) {
                     choice.fill.insert(name.clone(), below);
                     found = true;
                 }

@@ -1,4 +1,4 @@
-//! Changing one value of a scene's text, by its path: `lights[0].fields.intensity`, `objects[pot].translate`.
+//! Changing values of a scene's text, by their path: `lights[0].fields.intensity`, `objects[pot].translate`, `lights[*].casts_shadow`.
 
 use std::ops::Range;
 
@@ -28,6 +28,8 @@ enum Part {
     Index(usize),
     /// `[name]`: the element with this name, or the map's key.
     Named(String),
+    /// `[*]`: each element.
+    Every,
 }
 
 /// Steps with their places in the path.
@@ -46,20 +48,26 @@ pub fn set(name: &str, text: &str, path: &str, value: &str) -> Result<String, Di
         Diagnostic::new(codes::BAD_OVERRIDE_PATH, message).at(&SourceFile::new("--set", format!("{path}={value}")), at, label)
     };
     let parts = parse(path).map_err(|(at, why)| wrong(at..path.len().max(at), format!("`{path}` is no path"), why))?;
+    if let Some((_, every)) = parts.iter().find(|(part, _)| *part == Part::Every) {
+        let (before, after) = (&path[..every.start], &path[every.end..]);
+        let mut changed = text.to_owned();
+        let mut index = 0;
+        while is_there(&changed, &format!("{before}[{index}]")) {
+            changed = set(name, &changed, &format!("{before}[{index}]{after}"), value)?;
+            index += 1;
+        }
+        if index > 0 {
+            return Ok(changed);
+        }
+        let message = format!("`{path}` leads nowhere in `{name}`");
+        return Err(wrong(every.clone(), message, "what is before this is no list, or an empty one"));
+    }
     let value = as_ron(value);
     let places = Locator::new(text);
 
     let mut steps: Vec<Step> = Vec::new();
     for (i, (part, span)) in parts.iter().enumerate() {
-        let next = match part {
-            Part::Index(index) => Step::Index(*index),
-            Part::Key(key) => Step::Key(key),
-            Part::Named(wanted) => match named(text, &places, &steps, wanted) {
-                Some(step) => step,
-                None => Step::Key(wanted),
-            },
-        };
-        steps.push(next);
+        steps.push(step(text, &places, &steps, part));
         if places.find(&steps).is_some() {
             continue;
         }
@@ -98,6 +106,30 @@ pub fn set(name: &str, text: &str, path: &str, value: &str) -> Result<String, Di
     Ok(format!("{}{value}{}", &text[..span.start], &text[span.end..]))
 }
 
+/// Whether something stands at the path.
+fn is_there(text: &str, path: &str) -> bool {
+    let places = Locator::new(text);
+    let Ok(parts) = parse(path) else {
+        return false;
+    };
+    let mut steps = Vec::new();
+    for (part, _) in &parts {
+        steps.push(step(text, &places, &steps, part));
+    }
+    places.find(&steps).is_some()
+}
+
+/// The step that a part means after those before it.
+fn step<'a>(text: &str, places: &Locator, before: &[Step<'a>], part: &'a Part) -> Step<'a> {
+    match part {
+        Part::Index(index) => Step::Index(*index),
+        Part::Key(key) => Step::Key(key),
+        Part::Named(wanted) => named(text, places, before, wanted).unwrap_or(Step::Key(wanted)),
+        // Taken apart before.
+        Part::Every => Step::Key("*"),
+    }
+}
+
 /// The element of a list whose `name` is this.
 fn named<'a>(text: &str, places: &Locator, steps: &[Step<'a>], wanted: &str) -> Option<Step<'a>> {
     for index in 0.. {
@@ -127,7 +159,10 @@ fn parse(path: &str) -> Result<Parts, (usize, &'static str)> {
             if inner.is_empty() {
                 return Err((at, "a number or a name is missing"));
             }
-            let part = inner.parse().map_or_else(|_| Part::Named(inner.to_owned()), Part::Index);
+            let part = match inner {
+                "*" => Part::Every,
+                _ => inner.parse().map_or_else(|_| Part::Named(inner.to_owned()), Part::Index),
+            };
             parts.push((part, at..at + end + 2));
             at += end + 2;
             continue;
@@ -249,6 +284,21 @@ mod tests {
         assert_eq!(changed("lights[0].module", "point"), "(name: \"sun\", module: \"point\"),");
     }
 
+    /// Catches an element that is left out, set twice, or found in the text as it was before its neighbour changed.
+    #[test]
+    fn every_element_changes() {
+        let both = set("a.scene.ron", TEXT, "lights[*].fields.color", "5000 K").unwrap();
+        let one = set("a.scene.ron", TEXT, "lights[1].fields.color", "5000 K").unwrap();
+        assert_eq!(both, set("a.scene.ron", &one, "lights[0].fields.color", "5000 K").unwrap());
+        assert_eq!(both.matches("5000 K").count(), 2);
+        assert_eq!(
+            set("a.scene.ron", TEXT, "size[*]", "7").unwrap(),
+            TEXT.replace("(4, 3)", "(7, 7)")
+        );
+        let error = set("a.scene.ron", TEXT, "post[*].fill.curve[*]", "7").unwrap_err();
+        assert_eq!((error.message.as_str(), error.labels[0].span.clone()), ("`post[0].fill.curve[*]` leads nowhere in `a.scene.ron`", 18..21));
+    }
+
     /// Catches a path that is quietly ignored.
     #[test]
     fn paths_to_nowhere_are_errors() {
@@ -261,6 +311,10 @@ mod tests {
             "size.x.y",
             "lights[0]x",
             "lights[]",
+            "lights[*",
+            "nothing[*]",
+            "size[*][*]",
+            "[*]",
             "nothing.at.all",
             "[0",
         ] {

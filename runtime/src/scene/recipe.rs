@@ -1,7 +1,9 @@
 //! From a scene's choices to a recipe's nodes and the settings beside them.
 
+use std::sync::Arc;
+
 use indexmap::IndexMap;
-use shadewright_compiler::Catalog;
+use shadewright_compiler::{Catalog, Module};
 use shadewright_compiler::manifest::{Arity, Filling, Node, ParamMode};
 
 use super::assets::Assets;
@@ -22,10 +24,14 @@ pub(super) struct Planter {
 impl Planter {
     /// The node of a choice that stands at `place`. Choices were checked before: what does not exist is left out here.
     pub(super) fn plant(&mut self, choice: &Choice, place: &str, catalog: &Catalog, assets: &mut Assets) -> Node {
+        self.plant_as(catalog.module(&choice.module).ok(), choice, place, catalog, assets)
+    }
+
+    fn plant_as(&mut self, module: Option<&Arc<Module>>, choice: &Choice, place: &str, catalog: &Catalog, assets: &mut Assets) -> Node {
         let mut node = Node::new(choice.module.clone());
-        let module = catalog.module(&choice.module).ok();
         for (slot, choices) in &choice.fill {
-            let list = module.is_some_and(|m| m.manifest.slots.get(slot).is_some_and(|s| s.arity == Arity::List));
+            let declared = module.and_then(|m| m.manifest.slots.get(slot));
+            let list = declared.is_some_and(|s| s.arity == Arity::List);
             let mut nodes = Vec::new();
             for (i, child) in choices.all().iter().enumerate() {
                 let place = if list {
@@ -33,7 +39,8 @@ impl Planter {
                 } else {
                     format!("{place}.{slot}")
                 };
-                nodes.push(self.plant(child, &place, catalog, assets));
+                let module = declared.and_then(|slot| catalog.module_for(&slot.interface, &child.module).ok());
+                nodes.push(self.plant_as(module, child, &place, catalog, assets));
             }
             let filling = match (list, nodes.pop()) {
                 (false, Some(last)) => Filling::One(last),

@@ -479,3 +479,13 @@ fn damage_never_panics() {
         }
     }
 }
+
+/// Catches a name that several categories have and that is not taken for what fits the slot.
+#[test]
+fn a_slot_says_which_module_a_name_means() {
+    let light = r#"(module: "sphere", fill: {"area": (module: "split", fill: {"diffuse": "representative-point", "specular": (module: "representative-point", params: {"widening": 0.5})})})"#;
+    let frame = read(&scene(light, "")).unwrap_or_else(|report| panic!("{report}"));
+    let settings = &frame.materials[0].settings.params;
+    let widened = settings.values().filter(|params| params.contains_key("widening")).count();
+    assert_eq!(widened, 1, "{settings:?}");
+}

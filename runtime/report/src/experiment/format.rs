@@ -86,6 +86,9 @@ pub enum TruthSource {
     Closed(String),
     /// A recipe, evaluated in double precision: ground truth by brute force is a module too.
     Reference(Node),
+    /// A recipe that sums over samples, evaluated in double precision. It has an error of its own, and jumps: so the worst input is that of the drawn
+    /// ones and no search's, and jumps are those of the formula where the truth has none. An alternative with other samples tells the error.
+    Sampled(Node),
     /// The module's own formula in double precision: it has a rounding error, and no error of model.
     Itself,
 }

@@ -13,6 +13,8 @@ use crate::experiment::Metric;
 const JUMP: f64 = 0.01;
 /// Halvings of a segment: what is left of it is below the spacing of 32-bit numbers.
 const HALVINGS: u32 = 28;
+/// Evaluations of the formula for a segment.
+pub(crate) const EVALUATIONS: f64 = 2.0 + HALVINGS as f64;
 
 /// A point of the cube, what the formula gives there, and how far that is from the truth.
 #[derive(Clone)]
@@ -26,7 +28,8 @@ struct End {
 /// changes more, until nothing is between its ends; then compares the formula's change with that of the truth. Of a formula that is right nearly
 /// everywhere the error is flat but where it jumps, however steep the formula itself is.
 ///
-/// Both are in double precision: what rounding makes is no jump.
+/// Both are in double precision: what rounding makes is no jump. A truth that is sampled would lead astray, and cost the most: there the formula's own
+/// change is followed, and the truth asked at the ends.
 pub(crate) fn jumps(subject: &Subject, points: &[Vec<f64>], random: &mut Random) -> Result<Fault, MeasureError> {
     let axes = subject.domain.axes();
     let smooth: Vec<usize> = (0..axes.len()).filter(|axis| axes[*axis].is_smooth).collect();
@@ -39,22 +42,34 @@ pub(crate) fn jumps(subject: &Subject, points: &[Vec<f64>], random: &mut Random)
         end
     };
     let others: Vec<Vec<f64>> = points.iter().map(far).collect();
-    let starts = ends(subject, points.to_vec())?;
-    let mut segments: Vec<[End; 2]> = starts.into_iter().zip(ends(subject, others)?).map(|(a, b)| [a, b]).collect();
+    let along = |points: Vec<Vec<f64>>| ends(subject, points, !subject.is_sampled());
+    let starts = along(points.to_vec())?;
+    let mut segments: Vec<[End; 2]> = starts.into_iter().zip(along(others)?).map(|(a, b)| [a, b]).collect();
     for _ in 0..HALVINGS {
-        let middles = ends(subject, segments.iter().map(middle).collect())?;
+        let middles = along(segments.iter().map(middle).collect())?;
         for (segment, middle) in segments.iter_mut().zip(middles) {
             let replaced = usize::from(drift(subject, &segment[0], &middle) >= drift(subject, &middle, &segment[1]));
             segment[replaced] = middle;
         }
     }
+    if subject.is_sampled() {
+        // Only where the formula changes has the truth something to say.
+        segments.retain(|[a, b]| change(subject, &b.value, &a.value) > JUMP);
+        let (first, last) = segments.into_iter().map(|[a, b]| (a.point, b.point)).unzip();
+        let pairs = ends(subject, first, true)?.into_iter().zip(ends(subject, last, true)?);
+        segments = pairs.map(|(a, b)| [a, b]).collect();
+    }
     Ok(count(subject, &segments))
 }
 
-fn ends(subject: &Subject, points: Vec<Vec<f64>>) -> Result<Vec<End>, MeasureError> {
+/// Values at points; beside the truth, or beside 0.
+fn ends(subject: &Subject, points: Vec<Vec<f64>>, with_truth: bool) -> Result<Vec<End>, MeasureError> {
     let rows: Vec<Json> = points.iter().map(|p| subject.domain.row(p)).collect();
     let values = subject.formula::<f64>(&rows)?.values;
-    let truths = subject.truth(&rows)?.unwrap_or_else(|| values.clone());
+    let truths = match with_truth {
+        true => subject.truth(&rows)?.unwrap_or_else(|| values.clone()),
+        false => values.iter().map(|value| vec![0.0; value.len()]).collect(),
+    };
     let end = |((point, value), truth)| End { point, value, truth };
     Ok(points.into_iter().zip(values).zip(truths).map(end).collect())
 }

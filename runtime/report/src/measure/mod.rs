@@ -29,7 +29,7 @@ pub(crate) use errors::statistics;
 pub(crate) use executed::executed;
 pub(crate) use row::{Effort, Measured, OnDevice, configurations, key, mark_dominated, measure, one_line};
 pub(crate) use sample::{Random, latin};
-pub(crate) use subject::Subject;
+pub(crate) use subject::{Known, Subject};
 
 use crate::data::Worst;
 use errors::largest;

@@ -18,7 +18,7 @@ use siphasher::sip128::{Hasher128 as _, SipHasher13};
 use super::agree::agree;
 use super::errors::{difference, largest, statistics};
 use super::executed::executed;
-use super::jumps::jumps;
+use super::jumps::{self, jumps};
 use super::sample::{Random, latin};
 use super::search::search;
 use super::slice::slice;
@@ -42,6 +42,8 @@ pub(crate) struct Effort {
     pub segments: usize,
     /// Side of the picture in points; 0 for none.
     pub picture: usize,
+    /// Most that a search, or looking for jumps, may execute; of a formula that executes much they do less. An addition is 1.
+    pub work: f64,
 }
 
 impl Effort {
@@ -56,6 +58,7 @@ impl Effort {
         },
         segments: 384,
         picture: 64,
+        work: 1e9,
     };
     /// What a test has time for. Equal on every machine.
     pub const QUICK: Self = Self {
@@ -68,7 +71,29 @@ impl Effort {
         },
         segments: 96,
         picture: 0,
+        work: 2e7,
     };
+}
+
+impl Effort {
+    /// What of it can be done for a formula that executes so much.
+    fn within(&self, executed: f64) -> Self {
+        let share = |evaluations: f64| (self.work / (evaluations * executed.max(1.0))).min(1.0);
+        let of_segments = share(self.segments as f64 * jumps::EVALUATIONS);
+        let search = self.search;
+        // In one number: of parents and of children its root.
+        let of_search = share(search.parents as f64 * search.children as f64 * f64::from(search.generations)).sqrt();
+        let part = |whole: usize, share: f64| (whole as f64 * share).ceil() as usize;
+        Self {
+            segments: part(self.segments, of_segments),
+            search: super::search::Effort {
+                parents: part(search.parents, of_search),
+                children: part(search.children, of_search),
+                ..search
+            },
+            ..*self
+        }
+    }
 }
 
 /// Points of the cube for an experiment's configurations. Parameters take few different values, so that rows share what is bound.
@@ -145,6 +170,7 @@ pub(crate) fn measure(subject: &Subject, device: Option<OnDevice>, effort: &Effo
     let table = subject.table(&rows)?;
     let evaluated = subject.probe.on_cpu::<f64>(&table)?;
     let precise = &evaluated.values;
+    let effort = &effort.within(executed(&evaluated.executed).mean);
     check()?;
     let single: Vec<Vec<f64>> = subject.probe.on_cpu::<f32>(&table)?.values.into_iter().map(widened).collect();
     check()?;
@@ -174,7 +200,8 @@ pub(crate) fn measure(subject: &Subject, device: Option<OnDevice>, effort: &Effo
 
     let mut worst = [None, None];
     for (place, of) in [Of::Model, Of::Rounding].into_iter().enumerate() {
-        if of == Of::Model && truth.is_none() {
+        // A search would find where samples are too few.
+        if of == Of::Model && (truth.is_none() || subject.is_sampled()) {
             continue;
         }
         let (got, wanted) = match of {

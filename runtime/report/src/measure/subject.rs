@@ -1,9 +1,12 @@
 //! One alternative of an experiment, ready to be evaluated: its formula in any number type, its truth.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
+
 use indexmap::IndexMap;
 use serde_json::{Map, Value as Json, json};
 use shadewright_compiler::catalog::Signature;
-use shadewright_compiler::manifest::{ModuleManifest, Param, Typed, Value, typed};
+use shadewright_compiler::manifest::{ModuleManifest, Node, Param, Typed, Value, typed};
 use shadewright_compiler::reflect::{Fill, Layout};
 use shadewright_compiler::{Catalog, Recipe};
 use shadewright_evaluate::Number;
@@ -22,12 +25,16 @@ pub(crate) struct Subject<'a> {
     truth: Against,
     signature: Signature,
     defaults: IndexMap<String, IndexMap<String, Value>>,
+    known: &'a Known,
 }
+
+/// What an experiment's sampled truth gave, by input.
+pub(crate) type Known = RefCell<HashMap<String, Vec<f64>>>;
 
 /// What a subject is compared with.
 enum Against {
     Form(Truth),
-    Reference(Box<Probe>),
+    Reference { probe: Box<Probe>, is_sampled: bool },
     Itself,
 }
 
@@ -36,10 +43,14 @@ impl<'a> Subject<'a> {
     ///
     /// # Errors
     /// A recipe cannot be probed.
-    pub fn new(catalog: &Catalog, experiment: &'a Experiment, alternative: &'a Alternative) -> Result<Self, MeasureError> {
+    pub fn new(catalog: &Catalog, experiment: &'a Experiment, alternative: &'a Alternative, known: &'a Known) -> Result<Self, MeasureError> {
         let function = experiment.function.as_str();
         let probe = Probe::new(catalog, &alternative.recipe, function)?;
         let root = &alternative.root;
+        let reference = |node: &Node, is_sampled| -> Result<Against, MeasureError> {
+            let probe = Box::new(Probe::new(catalog, &Recipe::from(node.clone()), function)?);
+            Ok(Against::Reference { probe, is_sampled })
+        };
         let truth = match &experiment.declared.truth {
             TruthSource::Itself => Against::Itself,
             TruthSource::Closed(folder) => oracles::truth(folder, function).map_or(Against::Itself, Against::Form),
@@ -47,7 +58,8 @@ impl<'a> Subject<'a> {
                 let folder = format!("{}/{}", root.category, root.name);
                 oracles::truth(&folder, function).map_or(Against::Itself, Against::Form)
             }
-            TruthSource::Reference(node) => Against::Reference(Box::new(Probe::new(catalog, &Recipe::from(node.clone()), function)?)),
+            TruthSource::Reference(node) => reference(node, false)?,
+            TruthSource::Sampled(node) => reference(node, true)?,
         };
         let declared = &experiment.declared;
         let varied = (declared.params == Params::Declared).then_some(&root.manifest);
@@ -65,6 +77,7 @@ impl<'a> Subject<'a> {
             truth,
             signature: catalog.signature(&experiment.category, function)?.unwrap_or_default(),
             defaults,
+            known,
         })
     }
 
@@ -78,43 +91,25 @@ impl<'a> Subject<'a> {
         !matches!(self.truth, Against::Itself)
     }
 
-    /// A row as a probe takes it: what the linked function does not read is left out.
+    /// A row as the alternative's probe takes it: what the linked function does not read is left out.
     pub fn fitted(&self, row: &Json) -> Json {
-        let Json::Object(given) = row else { return row.clone() };
-        let layout = self.probe.input().and_then(|(_, layout)| layout.element.as_deref());
-        let mut fitted = Map::new();
-        for (name, value) in given {
-            match name.as_str() {
-                "params" => {
-                    let known = &self.alternative.root.manifest.params;
-                    let frozen = &self.alternative.recipe.root.freeze;
-                    let kept = value.as_object().into_iter().flatten();
-                    let kept: Map<_, _> = kept
-                        .filter(|(name, _)| known.contains_key(*name) && !frozen.contains_key(*name))
-                        .map(|(name, value)| (name.clone(), value.clone()))
-                        .collect();
-                    if !kept.is_empty() {
-                        fitted.insert(name.clone(), Json::Object(kept));
-                    }
-                }
-                "instances" if !self.reads_instances() => {}
-                "instances" => {
-                    fitted.insert(name.clone(), value.clone());
-                }
-                _ => {
-                    if let Some(member) = layout.and_then(|l| l.members.iter().find(|m| m.name == *name)) {
-                        fitted.insert(name.clone(), only_read(&member.layout, value));
-                    }
-                }
-            }
+        let mut fitted = read_by(&self.probe, row);
+        let known = &self.alternative.root.manifest.params;
+        let frozen = &self.alternative.recipe.root.freeze;
+        let given = row.get("params").and_then(Json::as_object).into_iter().flatten();
+        let kept: Map<_, _> = given
+            .filter(|(name, _)| known.contains_key(*name) && !frozen.contains_key(*name))
+            .map(|(name, value)| (name.clone(), value.clone()))
+            .collect();
+        if !kept.is_empty() {
+            fitted.insert("params".to_owned(), Json::Object(kept));
         }
         Json::Object(fitted)
     }
 
-    /// Whether some module of the recipe has instances that the function reads.
-    fn reads_instances(&self) -> bool {
-        let bindings = &self.probe.program().reflection().bindings;
-        bindings.iter().any(|binding| matches!(binding.fill, Fill::Instances { .. }))
+    /// Whether the truth is a sum over samples, which may jump, and be off itself.
+    pub fn is_sampled(&self) -> bool {
+        matches!(self.truth, Against::Reference { is_sampled: true, .. })
     }
 
     /// Packs rows.
@@ -136,9 +131,12 @@ impl<'a> Subject<'a> {
         let values: Vec<Vec<f64>> = match &self.truth {
             Against::Itself => return Ok(None),
             Against::Form(truth) => rows.iter().map(|row| self.closed(*truth, row)).collect(),
-            Against::Reference(probe) => {
-                let rows: Vec<Json> = rows.iter().map(|row| without_params(&self.fitted(row))).collect();
-                probe.on_cpu::<f64>(&probe.table(&rows)?)?.values
+            Against::Reference { probe, is_sampled } => {
+                let rows: Vec<Json> = rows.iter().map(|row| Json::Object(read_by(probe, row))).collect();
+                match is_sampled {
+                    true => self.sampled(probe, &rows)?,
+                    false => probe.on_cpu::<f64>(&probe.table(&rows)?)?.values,
+                }
             }
         };
         let numbers = self.probe.components().len();
@@ -158,6 +156,19 @@ impl<'a> Subject<'a> {
             });
         }
         Ok(Some(values))
+    }
+
+    /// What a reference gives that is worth remembering: alternatives share their inputs.
+    fn sampled(&self, probe: &Probe, rows: &[Json]) -> Result<Vec<Vec<f64>>, MeasureError> {
+        let mut known = self.known.borrow_mut();
+        let names: Vec<String> = rows.iter().map(Json::to_string).collect();
+        let new: IndexMap<&String, &Json> = names.iter().zip(rows).filter(|(name, _)| !known.contains_key(*name)).collect();
+        let wanted: Vec<Json> = new.values().map(|row| (*row).clone()).collect();
+        if !wanted.is_empty() {
+            let values = probe.on_cpu::<f64>(&probe.table(&wanted)?)?.values;
+            known.extend(new.into_keys().cloned().zip(values));
+        }
+        Ok(names.iter().filter_map(|name| known.get(name).cloned()).collect())
     }
 
     fn closed(&self, truth: Truth, row: &Json) -> Vec<f64> {
@@ -198,6 +209,30 @@ impl<'a> Subject<'a> {
     }
 }
 
+/// The arguments and instances of a row that a probe's function reads. Parameters are each recipe's own.
+fn read_by(probe: &Probe, row: &Json) -> Map<String, Json> {
+    let layout = probe.input().and_then(|(_, layout)| layout.element.as_deref());
+    let bindings = &probe.program().reflection().bindings;
+    let reads_instances = bindings.iter().any(|binding| matches!(binding.fill, Fill::Instances { .. }));
+    let mut read = Map::new();
+    for (name, value) in row.as_object().into_iter().flatten() {
+        let member = || layout.and_then(|l| l.members.iter().find(|m| m.name == *name));
+        match name.as_str() {
+            "params" => {}
+            "instances" if reads_instances => {
+                read.insert(name.clone(), value.clone());
+            }
+            "instances" => {}
+            _ => {
+                if let Some(member) = member() {
+                    read.insert(name.clone(), only_read(&member.layout, value));
+                }
+            }
+        }
+    }
+    read
+}
+
 /// The members of a value that a layout has.
 fn only_read(layout: &Layout, value: &Json) -> Json {
     match value {
@@ -210,15 +245,6 @@ fn only_read(layout: &Layout, value: &Json) -> Json {
         Json::Object(_) => json!({}),
         _ => value.clone(),
     }
-}
-
-/// A reference has parameters of its own.
-fn without_params(row: &Json) -> Json {
-    let mut row = row.clone();
-    if let Json::Object(members) = &mut row {
-        members.shift_remove("params");
-    }
-    row
 }
 
 fn instance(manifest: &ModuleManifest, given: &Json) -> Json {

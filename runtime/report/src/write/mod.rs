@@ -2,6 +2,7 @@
 //!
 //! Nothing here reads a clock, a hash map or the environment: equal data gives equal bytes.
 
+mod difference;
 mod faults;
 mod markdown;
 mod number;
@@ -14,6 +15,7 @@ mod drawing;
 mod page;
 mod tables;
 
+pub use difference::{Difference, difference};
 pub use drawing::pareto::dominated;
 pub use faults::{Fault, Kind, faults};
 pub use markdown::markdown;
