@@ -138,6 +138,19 @@ fn sphere_toward(c: vec3f, radius: f32, along: vec3f) -> vec3f {
     return c + to_ray * min(radius / max(distance, 1e-15), 1.0);
 }
 
+/// The point between c - half and c + half that is nearest to the ray along the unit direction `along`; where the ray leaves all of them behind, the end whose
+/// direction is nearer to its own.
+fn segment_toward(c: vec3f, half: vec3f, along: vec3f) -> vec3f {
+    let reach = unit_or(half, vec3f(0.0));
+    let slope = dot(along, reach);
+    // Both lines parallel: any point is as near.
+    let x = (slope * dot(along, c) - dot(c, reach)) / max(1.0 - slope * slope, 1e-6);
+    let limit = length(half);
+    let near = c + reach * clamp(x, -limit, limit);
+    let end = c + half * sign(slope);
+    return select(end, near, dot(unit_or(near, -along), along) >= dot(unit_or(end, -along), along));
+}
+
 // A flat shape.
 
 /// Columns: the directions of width and height in the plane, and its normal. What of `right` is along the normal does not count; where nothing is

@@ -204,15 +204,10 @@ fn shape_form_factor(i: u32, origin: vec3f, local: mat3x3f) -> f32 {
     return sum;
 }
 
-/// The point of the axis nearest to the ray, moved toward it by the radius.
+/// The point of the axis, moved toward the ray by the radius.
 fn shape_toward(i: u32, origin: vec3f, along: vec3f) -> vec3f {
-    let c = instances[i].position - origin;
-    let e = axis(i);
-    let slope = dot(along, e);
-    // Both lines parallel: any point is as near.
-    let x = (slope * dot(along, c) - dot(c, e)) / max(1.0 - slope * slope, 1e-6);
-    let half = 0.5 * instances[i].length;
-    return sphere_toward(c + e * clamp(x, -half, half), instances[i].radius, along);
+    let near = segment_toward(instances[i].position - origin, axis(i) * (0.5 * instances[i].length), along);
+    return sphere_toward(near, instances[i].radius, along);
 }
 
 /// From within the radius only the cap is seen.
