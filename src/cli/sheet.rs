@@ -75,7 +75,11 @@ pub fn run(context: Context, options: &Options) -> Result<(), Failure> {
     let truth = match (&options.against, axes.as_slice()) {
         (None, _) => None,
         (Some(value), [axis]) => Some((format!("true: {}", bare(module(value))), scene.set(&axis.path, value)?)),
-        (Some(_), _) => return Err(Failure::Usage("--against: there is more than one --each to put it in the place of".to_owned())),
+        (Some(_), _) => {
+            return Err(Failure::Usage(
+                "--against: there is more than one --each to put it in the place of".to_owned(),
+            ));
+        }
     };
     let is_compared = truth.is_some();
     variants.splice(0..0, truth);
@@ -138,7 +142,10 @@ fn draw(context: Context, frames: Vec<(String, Frame)>, is_compared: bool) -> Re
             return Err(Failure::message("the scene has no `display` pass, so there is nothing to show"));
         };
         let hdr = if is_compared { targets.read_hdr(&gpu)? } else { Vec::new() };
-        drawn.push(Drawn { tile: Tile { name, pixels }, hdr });
+        drawn.push(Drawn {
+            tile: Tile { name, pixels },
+            hdr,
+        });
         watch.step();
     }
     watch.finish();

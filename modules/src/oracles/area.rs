@@ -195,6 +195,6 @@ mod tests {
     /// Catches the flux over the area instead of over pi times the area.
     #[test]
     fn flux() {
-        near(luminance(0.0, 800.0, 4.0 * PI * 0.05 * 0.05), 8105.694_69, 1e-8);
+        near(luminance(0.0, 800.0, 4.0 * PI * 0.05 * 0.05), 8_105.694_69, 1e-8);
     }
 }

@@ -56,7 +56,10 @@ impl<'a> Examiner<'a> {
     pub(super) fn choice(&mut self, choice: &Choice, interface: Option<&str>, path: &[Step]) {
         let named = join(path, &[Step::Key("module")]);
         let catalog = self.catalog;
-        let found = interface.map_or_else(|| catalog.module(&choice.module), |interface| catalog.module_for(interface, &choice.module));
+        let found = interface.map_or_else(
+            || catalog.module(&choice.module),
+            |interface| catalog.module_for(interface, &choice.module),
+        );
         let Some(module) = self.found(found, &named) else {
             return;
         };

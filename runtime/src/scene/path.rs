@@ -291,12 +291,12 @@ mod tests {
         let one = set("a.scene.ron", TEXT, "lights[1].fields.color", "5000 K").unwrap();
         assert_eq!(both, set("a.scene.ron", &one, "lights[0].fields.color", "5000 K").unwrap());
         assert_eq!(both.matches("5000 K").count(), 2);
-        assert_eq!(
-            set("a.scene.ron", TEXT, "size[*]", "7").unwrap(),
-            TEXT.replace("(4, 3)", "(7, 7)")
-        );
+        assert_eq!(set("a.scene.ron", TEXT, "size[*]", "7").unwrap(), TEXT.replace("(4, 3)", "(7, 7)"));
         let error = set("a.scene.ron", TEXT, "post[*].fill.curve[*]", "7").unwrap_err();
-        assert_eq!((error.message.as_str(), error.labels[0].span.clone()), ("`post[0].fill.curve[*]` leads nowhere in `a.scene.ron`", 18..21));
+        assert_eq!(
+            (error.message.as_str(), error.labels[0].span.clone()),
+            ("`post[0].fill.curve[*]` leads nowhere in `a.scene.ron`", 18..21)
+        );
     }
 
     /// Catches a path that is quietly ignored.

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use indexmap::IndexMap;
-use shadewright_compiler::{Catalog, Module};
 use shadewright_compiler::manifest::{Arity, Filling, Node, ParamMode};
+use shadewright_compiler::{Catalog, Module};
 
 use super::assets::Assets;
 use super::{Choice, Choices, Picture};

@@ -43,7 +43,12 @@ impl<'a> Subject<'a> {
     ///
     /// # Errors
     /// A recipe cannot be probed.
-    pub fn new(catalog: &Catalog, experiment: &'a Experiment, alternative: &'a Alternative, known: &'a Known) -> Result<Self, MeasureError> {
+    pub fn new(
+        catalog: &Catalog,
+        experiment: &'a Experiment,
+        alternative: &'a Alternative,
+        known: &'a Known,
+    ) -> Result<Self, MeasureError> {
         let function = experiment.function.as_str();
         let probe = Probe::new(catalog, &alternative.recipe, function)?;
         let root = &alternative.root;

@@ -52,7 +52,11 @@ pub fn difference(found: &[[f32; 4]], truth: &[[f32; 4]]) -> Difference {
         }
         let height = (255.0 * (error.abs() / FULL).min(1.0)).round() as u8;
         let pale = height / 3;
-        if error > 0.0 { [height, pale, pale, 255] } else { [pale, pale, height, 255] }
+        if error > 0.0 {
+            [height, pale, pale, 255]
+        } else {
+            [pale, pale, height, 255]
+        }
     };
     Difference {
         pixels: pairs.iter().flat_map(pixel).collect(),
@@ -80,7 +84,13 @@ mod tests {
         assert!((all.rms - rms).abs() < 1e-7, "{}", all.rms);
         assert!((all.largest - 0.5).abs() < 1e-12 && all.broken == 1);
         let height = (255.0 * red / 0.5).round() as u8;
-        let expected = [[0, 0, 0, 255], [height, height / 3, height / 3, 255], [255, 85, 85, 255], [85, 85, 255, 255], BROKEN];
+        let expected = [
+            [0, 0, 0, 255],
+            [height, height / 3, height / 3, 255],
+            [255, 85, 85, 255],
+            [85, 85, 255, 255],
+            BROKEN,
+        ];
         assert_eq!(all.pixels, expected.concat());
         assert_eq!(all.summary(), "RMS 36.1 %, largest 50.0 %, 1 pixel not finite");
     }
