@@ -6,6 +6,7 @@ mod png;
 mod write;
 
 pub use self::exr::{decode_exr, encode_exr};
+pub(crate) use mip::halved;
 pub use mip::{linear_to_srgb, mip_levels, srgb_to_linear};
 pub use png::{decode_texture, encode_png};
 pub use write::write_atomically;
