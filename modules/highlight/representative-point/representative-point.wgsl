@@ -13,5 +13,5 @@ fn highlight(i: u32, s: Surface, v: vec3f) -> vec3f {
     let widened = min(s.alpha + params.widening * shape_radius(i) * inverseSqrt(square), 1.0);
     let height = s.alpha / max(widened, s.alpha);
     // A surface mirrors no more than the light has.
-    return shape_luminance(i, s.position, mirror, s.alpha) * min(brdf(s, v, l) * (cosine * height * height * area / (square + area * INV_PI)), vec3f(1.0));
+    return shape_luminance(i, s.position, s.normal, mirror, s.alpha) * min(brdf(s, v, l) * (cosine * height * height * area / (square + area * INV_PI)), vec3f(1.0));
 }
