@@ -6,7 +6,7 @@
 //! | one for each level | its width, its height, number of its first texel among all `vec4f`, 0 |
 //! | one for each texel | red, green, blue, 0: rows from the top, levels from the largest to the single texel that is the mean of the picture |
 
-use crate::image::{decode_exr, decode_texture, halved, srgb_to_linear};
+use crate::image::{decode_exr, decode_texture, exr_sizes, halved, srgb_to_linear, texture_size};
 
 /// Most texels along one side.
 pub const MAX_PICTURE_SIDE: u32 = 4096;
@@ -27,6 +27,9 @@ type Texels = (u32, u32, Vec<[f32; 4]>);
 
 /// Its colours have been multiplied by the coverage already, as the format wants it. Below 0 is what Rec.709 cannot hold; it is taken for 0.
 fn exr(bytes: &[u8]) -> Result<Texels, String> {
+    for (width, height) in exr_sizes(bytes).map_err(|why| why.to_string())? {
+        check(width, height)?;
+    }
     let picture = decode_exr(bytes).map_err(|why| why.to_string())?;
     let texels = picture.texels.iter().map(|&[r, g, b, _]| [r, g, b, 0.0]).collect();
     Ok((picture.width, picture.height, texels))
@@ -34,6 +37,8 @@ fn exr(bytes: &[u8]) -> Result<Texels, String> {
 
 /// Eight bits a channel, sRGB-encoded.
 fn encoded(bytes: &[u8]) -> Result<Texels, String> {
+    let (width, height) = texture_size(bytes).map_err(|why| why.to_string())?;
+    check(width, height)?;
     let picture = decode_texture(bytes).map_err(|why| why.to_string())?;
     let light: Vec<f32> = (0..=u8::MAX).map(|code| srgb_to_linear(f32::from(code) / 255.0)).collect();
     let texel = |t: &[u8]| {
@@ -44,13 +49,18 @@ fn encoded(bytes: &[u8]) -> Result<Texels, String> {
     Ok((picture.width, picture.height, picture.rgba.chunks_exact(4).map(texel).collect()))
 }
 
-#[allow(clippy::cast_precision_loss)] // counts are below 2^24
-fn levels(width: u32, height: u32, mut texels: Vec<[f32; 4]>) -> Result<Vec<f32>, String> {
+/// Said of a header: a picture that is too large is refused before memory is taken for it.
+fn check(width: u32, height: u32) -> Result<(), String> {
     if width > MAX_PICTURE_SIDE || height > MAX_PICTURE_SIDE || u64::from(width) * u64::from(height) > MAX_PICTURE_TEXELS {
         return Err(format!(
             "{width} x {height} texels, more than {MAX_PICTURE_SIDE} a side or {MAX_PICTURE_TEXELS} in all"
         ));
     }
+    Ok(())
+}
+
+#[allow(clippy::cast_precision_loss)] // counts are below 2^24
+fn levels(width: u32, height: u32, mut texels: Vec<[f32; 4]>) -> Result<Vec<f32>, String> {
     let (mut w, mut h) = (width as usize, height as usize);
     for (index, texel) in texels.iter_mut().enumerate() {
         if let Some(channel) = texel.iter().find(|channel| !channel.is_finite() || **channel > MAX_CHANNEL) {
