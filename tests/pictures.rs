@@ -78,11 +78,10 @@ fn bad_pictures_are_located() {
     assert_eq!(
         text,
         "error[SW0907]: the file `long.png` cannot be used
-  --> a.scene.ron:3:87
+  --> a.scene.ron:3:85
   |
 3 | lights: [(module: \"rectangle\", fill: {\"picture\": (module: \"image\", files: {\"image\": \"long.png\"})})])
-  |                                                                                       ^^^^^^^^^^ 4097 x 1 texels, more than 4096 a side or 4194304 in all
-
+  |                                                                                     ^^^^^^^^^^ 4097 x 1 texels, more than 4096 a side or 4194304 in all
 "
     );
 }
