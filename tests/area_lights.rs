@@ -315,6 +315,38 @@ fn highlights_are_finite_and_bounded() {
     }
 }
 
+/// Catches a place or a width of what is averaged that is no number, from any side and at any distance; light from a dark side; and means that are brighter
+/// than the picture, whose red is at most 1.
+#[test]
+fn pictures_are_finite_and_bounded() {
+    let all = configurations("rectangle");
+    let pictured = |area: &str| format!(r#"(module: "light/rectangle", fill: {{"picture": "image", "area": {area}}})"#);
+    for with in IRRADIANCE {
+        let rows: Vec<Json> = all.iter().map(white).collect();
+        for ((got, row), at) in evaluated(&pictured(&diffuse(with)), &rows, false).iter().zip(&rows).zip(&all) {
+            assert!(got.is_finite() && *got >= 0.0, "{with}: {got} of {row}");
+            assert!(*got == 0.0 || !at.is_behind, "{with}, from behind: {got} of {row}");
+            assert!(*got < 1.0001 || matches!(with, "centre" | "reference"), "{with}: {got} of {row}");
+        }
+    }
+    for with in ["representative-point", "d-modification", "overlap", "ltc"] {
+        let area = format!(r#"(module: "split", fill: {{"specular": "{with}"}})"#);
+        let recipe = format!(r#"(module: "with-brdf", fill: {{"lights": [{}]}})"#, pictured(&area));
+        let row = |(step, at): (usize, &At)| {
+            let alpha = ALPHAS[step % ALPHAS.len()];
+            let v = single3((2.0 * at.normal.dot(at.place) * at.normal - at.place).normalize_or(at.normal));
+            json!({
+                "s": {"normal": at.normal.to_array(), "diffuse": [0, 0, 0], "f0": [1, 1, 1], "alpha": alpha, "widths": [alpha, alpha]},
+                "v": v.to_array(), "instances": [at.fields],
+            })
+        };
+        let rows: Vec<Json> = all.iter().enumerate().map(row).collect();
+        for (got, row) in evaluated(&recipe, &rows, false).iter().zip(&rows) {
+            assert!(got.is_finite() && (0.0..=1.0001).contains(got), "{with}: {got} of {row}");
+        }
+    }
+}
+
 /// Catches a pop or a rise where a light sinks below the horizon: its form factor falls all the way, and ends at 0.
 #[test]
 fn a_sinking_light_fades() {

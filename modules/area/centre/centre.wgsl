@@ -8,5 +8,5 @@ fn illuminate(i: u32, s: Surface, v: vec3f) -> vec3f {
     if cosine <= 0.0 {
         return vec3f(0.0);
     }
-    return shape_luminance(i) * brdf(s, v, l) * (cosine * shape_projected_area(i, s.position) / square);
+    return shape_luminance(i, s.position, s.normal, s.normal, 0.5) * brdf(s, v, l) * (cosine * shape_projected_area(i, s.position) / square);
 }

@@ -13,5 +13,5 @@ fn highlight(i: u32, s: Surface, v: vec3f) -> vec3f {
     rougher.alpha = min(s.alpha + more, 1.0);
     rougher.widths = min(s.widths + more, vec2f(1.0));
     // A surface mirrors no more than the light has.
-    return shape_luminance(i) * min(brdf(rougher, v, l) * (cosine * area / (square + area * INV_PI)), vec3f(1.0));
+    return shape_luminance(i, s.position, s.normal, l, rougher.alpha) * min(brdf(rougher, v, l) * (cosine * area / (square + area * INV_PI)), vec3f(1.0));
 }

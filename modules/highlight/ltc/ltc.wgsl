@@ -57,5 +57,5 @@ fn highlight(i: u32, s: Surface, v: vec3f) -> vec3f {
     // The table's second integral is B less what level facets would have.
     let c = 1.0 - m;
     let grazing = cosine_fresnel() * cell.integrals.x * (c * c) * (c * c) * c + cell.integrals.y;
-    return shape_luminance(i) * (s.f0 * cell.integrals.x + (1.0 - s.f0) * grazing) * factor;
+    return shape_luminance(i, s.position, s.normal, mirror, alpha) * (s.f0 * cell.integrals.x + (1.0 - s.f0) * grazing) * factor;
 }

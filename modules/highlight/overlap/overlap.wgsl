@@ -27,5 +27,5 @@ fn highlight(i: u32, s: Surface, v: vec3f) -> vec3f {
         return vec3f(0.0);
     }
     // A surface mirrors no more than the light has.
-    return shape_luminance(i) * min(brdf(s, v, l) * (cosine * sharing), vec3f(1.0));
+    return shape_luminance(i, s.position, s.normal, mirror, s.alpha) * min(brdf(s, v, l) * (cosine * sharing), vec3f(1.0));
 }

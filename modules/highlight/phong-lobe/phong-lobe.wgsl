@@ -192,5 +192,6 @@ fn highlight(i: u32, s: Surface, v: vec3f) -> vec3f {
     let alpha = clamp(s.alpha, 1e-4, 1.0);
     let inside = share_within(i, s, phong_of(s, v, alpha, max(m, 0.02)));
     let albedo = facet_albedo(s, m);
-    return shape_luminance(i) * (s.f0 * albedo.x + s.f90 * albedo.y) * inside;
+    let mirror = normalize(reflect(-v, s.normal));
+    return shape_luminance(i, s.position, s.normal, mirror, alpha) * (s.f0 * albedo.x + s.f90 * albedo.y) * inside;
 }

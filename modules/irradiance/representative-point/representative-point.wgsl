@@ -11,5 +11,5 @@ fn irradiance(i: u32, s: Surface) -> vec3f {
     let reach = max(top - middle, 0.0);
     let cosine = select(0.25 * top * top / max(reach, 1e-20), middle, middle >= reach);
     let area = shape_projected_area(i, s.position);
-    return shape_luminance(i) * (cosine * area / max(dot(offset, offset) + area * INV_PI, 1e-30));
+    return shape_luminance(i, s.position, s.normal, s.normal, 0.5) * (cosine * area / max(dot(offset, offset) + area * INV_PI, 1e-30));
 }

@@ -18,5 +18,5 @@ fn irradiance(i: u32, s: Surface) -> vec3f {
         + at(i, s, vec2f(0.1773, 0.8227)) + at(i, s, vec2f(0.8227, 0.8227));
     // Of 2 pi sr, in the mean.
     let sky = sum.x * 0.0318309886183791;
-    return shape_luminance(i) * min(0.2 * sum.y * inverseSqrt(1.0 + sky * sky), 3.14159265358979);
+    return shape_luminance(i, s.position, s.normal, s.normal, 0.5) * min(0.2 * sum.y * inverseSqrt(1.0 + sky * sky), 3.14159265358979);
 }

@@ -9,7 +9,7 @@ fn surface_area(i: u32) -> f32 {
 }
 
 /// Luminance, with the flux spread over all that shines: phi / (pi A).
-fn shape_luminance(i: u32) -> vec3f {
+fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
     var area = surface_area(i);
     if params.two_sided {
         area *= 2.0;
@@ -54,7 +54,7 @@ fn shape_pdf(i: u32, origin: vec3f, l: vec3f) -> f32 {
 }
 
 fn shape_radiance(i: u32, origin: vec3f, l: vec3f) -> vec3f {
-    return shape_luminance(i) * (plane_shines(-dot(l, axes(i)[2]), params.two_sided) * sign(shape_pdf(i, origin, l)));
+    return shape_luminance(i, origin, l, l, 0.0) * (plane_shines(-dot(l, axes(i)[2]), params.two_sided) * sign(shape_pdf(i, origin, l)));
 }
 
 fn shape_configuration_factor(i: u32, origin: vec3f, n: vec3f) -> f32 {

@@ -61,7 +61,7 @@ fn cover(i: u32, at: vec2f) -> vec2i {
 }
 
 /// Luminance, with the flux spread over all that shines: phi / (pi A); no less than 1e-12 m2.
-fn shape_luminance(i: u32) -> vec3f {
+fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
     let area = max(abs(outline(i).area), 1e-12) * select(1.0, 2.0, params.two_sided);
     return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * area));
 }
@@ -120,7 +120,7 @@ fn shape_pdf(i: u32, origin: vec3f, l: vec3f) -> f32 {
 }
 
 fn shape_radiance(i: u32, origin: vec3f, l: vec3f) -> vec3f {
-    return shape_luminance(i) * (plane_shines(-dot(l, axes(i)[2]), params.two_sided) * abs(met(i, origin, l).y));
+    return shape_luminance(i, origin, l, l, 0.0) * (plane_shines(-dot(l, axes(i)[2]), params.two_sided) * abs(met(i, origin, l).y));
 }
 
 fn shape_configuration_factor(i: u32, origin: vec3f, n: vec3f) -> f32 {

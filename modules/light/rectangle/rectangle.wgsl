@@ -8,13 +8,30 @@ fn surface_area(i: u32) -> f32 {
     return max(instances[i].size.x * instances[i].size.y, 1e-12);
 }
 
-/// Luminance, with the flux spread over all that shines: phi / (pi A).
-fn shape_luminance(i: u32) -> vec3f {
+/// What of the picture is in the lobe around `along`.
+fn pictured(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
+    let axis = axes(i);
+    let per_size = 1.0 / max(instances[i].size, vec2f(1e-12));
+    let seen = plane_footprint((instances[i].position - origin) * axis, n * axis, along * axis, alpha, 0.5 * instances[i].size);
+    // Rows count from the top.
+    return picture(0.5 + vec2f(seen.x, -seen.y) * per_size, seen.zw * per_size);
+}
+
+/// Luminance, with the flux spread over all that shines: phi / (pi A), over the mean of a picture.
+fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
     var area = surface_area(i);
     if params.two_sided {
         area *= 2.0;
     }
-    return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * area));
+    if params.pictured {
+        // Of a black picture nothing can have a flux.
+        area *= max(luminance(picture_mean()), 1e-6);
+    }
+    let full = instances[i].color * (instances[i].luminance + instances[i].flux / (PI * area));
+    if params.pictured {
+        return full * pictured(i, origin, n, along, alpha);
+    }
+    return full;
 }
 
 fn shape_centre(i: u32) -> vec3f {
@@ -55,7 +72,7 @@ fn shape_pdf(i: u32, origin: vec3f, l: vec3f) -> f32 {
 }
 
 fn shape_radiance(i: u32, origin: vec3f, l: vec3f) -> vec3f {
-    return shape_luminance(i) * (plane_shines(-dot(l, axes(i)[2]), params.two_sided) * sign(shape_pdf(i, origin, l)));
+    return shape_luminance(i, origin, l, l, 0.0) * (plane_shines(-dot(l, axes(i)[2]), params.two_sided) * sign(shape_pdf(i, origin, l)));
 }
 
 fn shape_configuration_factor(i: u32, origin: vec3f, n: vec3f) -> f32 {

@@ -1,5 +1,5 @@
 /// Luminance, with the flux spread over the surface: phi / (pi A), A = 4 pi r^2. The floor stands for a radius of a thousandth of a millimetre.
-fn shape_luminance(i: u32) -> vec3f {
+fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
     let area = 4.0 * PI * max(instances[i].radius * instances[i].radius, 1e-12);
     return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * area));
 }
@@ -25,7 +25,7 @@ fn shape_pdf(i: u32, origin: vec3f, l: vec3f) -> f32 {
 }
 
 fn shape_radiance(i: u32, origin: vec3f, l: vec3f) -> vec3f {
-    return select(vec3f(0.0), shape_luminance(i), shape_pdf(i, origin, l) > 0.0);
+    return select(vec3f(0.0), shape_luminance(i, origin, l, l, 0.0), shape_pdf(i, origin, l) > 0.0);
 }
 
 /// Across the horizon the segments of Nusselt's projection.

@@ -4,7 +4,7 @@ fn axis(i: u32) -> vec3f {
 }
 
 /// Luminance, with the flux spread over all that shines: phi / (pi A). The floor stands for a square of a thousandth of a millimetre.
-fn shape_luminance(i: u32) -> vec3f {
+fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
     let ends = select(0.0, instances[i].radius, params.caps);
     let area = 2.0 * PI * instances[i].radius * (instances[i].length + ends);
     return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * max(area, 1e-12)));
@@ -109,7 +109,7 @@ fn shape_pdf(i: u32, origin: vec3f, l: vec3f) -> f32 {
 }
 
 fn shape_radiance(i: u32, origin: vec3f, l: vec3f) -> vec3f {
-    return shape_luminance(i) * sign(shape_pdf(i, origin, l));
+    return shape_luminance(i, origin, l, l, 0.0) * sign(shape_pdf(i, origin, l));
 }
 
 fn shape_configuration_factor(i: u32, origin: vec3f, n: vec3f) -> f32 {

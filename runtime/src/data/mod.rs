@@ -3,6 +3,7 @@
 //! A decoder turns the bytes of a format into 32-bit floats. [`FORMATS`] is the list of them; a module's manifest names one.
 
 pub mod photometry;
+mod picture;
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -15,6 +16,8 @@ use shadewright_compiler::diagnostics::{Diagnostic, codes};
 use shadewright_compiler::program::Program;
 
 use crate::measured::{Merl, Rgl};
+
+pub use picture::{MAX_PICTURE_SIDE, MAX_PICTURE_TEXELS};
 
 /// Largest file of data, bytes.
 pub const MAX_DATA: u64 = 256 << 20;
@@ -35,6 +38,7 @@ pub const FORMATS: &[(&str, Decoder)] = &[
         Rgl::read(bytes).map(|table| table.floats()).map_err(|why| why.to_string())
     }),
     ("photometry", photometry::decode),
+    ("picture", picture::decode),
 ];
 
 /// Why bytes are no numbers.

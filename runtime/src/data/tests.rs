@@ -114,7 +114,7 @@ fn bad_files_are_located() {
   |                                         ^^^ `a` is to be read so
   |
   = did you mean `f32`?
-  = formats: f32, merl, rgl, photometry
+  = formats: f32, merl, rgl, photometry, picture
 "
     );
 }

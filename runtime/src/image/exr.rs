@@ -55,11 +55,7 @@ pub fn encode_exr(picture: &Hdr) -> std::result::Result<Vec<u8>, ImageError> {
 /// # Errors
 /// The bytes are no OpenEXR with these channels, or damaged, or the picture is larger than the limits.
 pub fn decode_exr(bytes: &[u8]) -> std::result::Result<Hdr, ImageError> {
-    let failed = |e: exr::error::Error| ImageError::Decode(e.to_string());
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), true).map_err(failed)?;
-    for header in &meta.headers {
-        check_limits(header.layer_size.width() as u64, header.layer_size.height() as u64)?;
-    }
+    exr_sizes(bytes)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -79,13 +75,26 @@ pub fn decode_exr(bytes: &[u8]) -> std::result::Result<Hdr, ImageError> {
         .all_attributes()
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
-        .map_err(failed)?;
+        .map_err(|e| ImageError::Decode(e.to_string()))?;
     let layer = image.layer_data;
     let mut picture = layer.channel_data.pixels;
     if let Some(comment) = &layer.attributes.comments {
         picture.comment = comment.to_string();
     }
     Ok(picture)
+}
+
+/// Width and height of each layer as the header says, before memory is taken for it.
+///
+/// # Errors
+/// As for [`decode_exr`], of what is in the header.
+pub(crate) fn exr_sizes(bytes: &[u8]) -> std::result::Result<Vec<(u32, u32)>, ImageError> {
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), true).map_err(|e| ImageError::Decode(e.to_string()))?;
+    let size = |size: Vec2<usize>| -> std::result::Result<_, ImageError> {
+        check_limits(size.width() as u64, size.height() as u64)?;
+        Ok((size.width() as u32, size.height() as u32))
+    };
+    meta.headers.iter().map(|header| size(header.layer_size)).collect()
 }
 
 #[cfg(test)]

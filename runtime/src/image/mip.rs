@@ -45,23 +45,7 @@ pub fn mip_levels(texture: &Texture, srgb: bool) -> Vec<Texture> {
         })
         .collect();
     while w > 1 || h > 1 {
-        let (nw, nh) = ((w / 2).max(1), (h / 2).max(1));
-        let (columns, rows) = (weights(w, nw), weights(h, nh));
-        let mut smaller = Vec::with_capacity(nw * nh);
-        for row in &rows {
-            for column in &columns {
-                let mut sum = [0.0f32; 4];
-                for &(y, wy) in row {
-                    for &(x, wx) in column {
-                        for (s, t) in sum.iter_mut().zip(texels[y * w + x]) {
-                            *s += wx * wy * t;
-                        }
-                    }
-                }
-                smaller.push(sum);
-            }
-        }
-        (w, h, texels) = (nw, nh, smaller);
+        (w, h, texels) = halved(w, h, &texels);
         let code = |c: f32| (if srgb { linear_to_srgb(c) } else { c } * 255.0).round() as u8;
         levels.push(Texture {
             width: w as u32,
@@ -73,6 +57,27 @@ pub fn mip_levels(texture: &Texture, srgb: bool) -> Vec<Texture> {
         });
     }
     levels
+}
+
+/// Width, height and texels of the next smaller level: sides halved and rounded down, a texel the mean of what it covers.
+pub(crate) fn halved(w: usize, h: usize, texels: &[[f32; 4]]) -> (usize, usize, Vec<[f32; 4]>) {
+    let (nw, nh) = ((w / 2).max(1), (h / 2).max(1));
+    let (columns, rows) = (weights(w, nw), weights(h, nh));
+    let mut smaller = Vec::with_capacity(nw * nh);
+    for row in &rows {
+        for column in &columns {
+            let mut sum = [0.0f32; 4];
+            for &(y, wy) in row {
+                for &(x, wx) in column {
+                    for (s, t) in sum.iter_mut().zip(texels[y * w + x]) {
+                        *s += wx * wy * t;
+                    }
+                }
+            }
+            smaller.push(sum);
+        }
+    }
+    (nw, nh, smaller)
 }
 
 /// For each of `to` new texels in a line, the old ones of `from` that it covers, and the share of each.

@@ -5,8 +5,11 @@ mod mip;
 mod png;
 mod write;
 
+pub(crate) use self::exr::exr_sizes;
 pub use self::exr::{decode_exr, encode_exr};
+pub(crate) use mip::halved;
 pub use mip::{linear_to_srgb, mip_levels, srgb_to_linear};
+pub(crate) use png::texture_size;
 pub use png::{decode_texture, encode_png};
 pub use write::write_atomically;
 

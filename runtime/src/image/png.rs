@@ -25,29 +25,42 @@ pub fn encode_png(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>, Image
 /// # Errors
 /// The bytes are neither, or damaged, or the picture is larger than the limits.
 pub fn decode_texture(bytes: &[u8]) -> Result<Texture, ImageError> {
-    let failed = |e: image::ImageError| ImageError::Decode(e.to_string());
-    let open = || -> Result<_, ImageError> {
-        let mut reader = ImageReader::new(Cursor::new(bytes))
-            .with_guessed_format()
-            .map_err(|e| ImageError::Decode(e.to_string()))?;
-        if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg)) {
-            return Err(ImageError::Decode("neither PNG nor JPEG".to_owned()));
-        }
-        let mut limits = Limits::default();
-        limits.max_image_width = Some(MAX_SIDE);
-        limits.max_image_height = Some(MAX_SIDE);
-        reader.limits(limits);
-        Ok(reader)
-    };
-    // The size is in the header: a picture that is too large is refused before memory is taken for it.
-    let (width, height) = open()?.into_dimensions().map_err(failed)?;
-    check_limits(width.into(), height.into())?;
-    let image = open()?.decode().map_err(failed)?.into_rgba8();
+    texture_size(bytes)?;
+    let image = open(bytes)?.decode().map_err(failed)?.into_rgba8();
     Ok(Texture {
         width: image.width(),
         height: image.height(),
         rgba: image.into_raw(),
     })
+}
+
+/// Width and height as the header says, before memory is taken for the picture.
+///
+/// # Errors
+/// As for [`decode_texture`], of what is in the header.
+pub(crate) fn texture_size(bytes: &[u8]) -> Result<(u32, u32), ImageError> {
+    let (width, height) = open(bytes)?.into_dimensions().map_err(failed)?;
+    check_limits(width.into(), height.into())?;
+    Ok((width, height))
+}
+
+fn open(bytes: &[u8]) -> Result<ImageReader<Cursor<&[u8]>>, ImageError> {
+    let mut reader = ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
+        .map_err(|e| ImageError::Decode(e.to_string()))?;
+    if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg)) {
+        return Err(ImageError::Decode("neither PNG nor JPEG".to_owned()));
+    }
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    reader.limits(limits);
+    Ok(reader)
+}
+
+#[allow(clippy::needless_pass_by_value)] // as `map_err` passes it
+fn failed(error: image::ImageError) -> ImageError {
+    ImageError::Decode(error.to_string())
 }
 
 #[cfg(test)]
