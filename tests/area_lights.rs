@@ -19,7 +19,15 @@ use shadewright::runtime::probe::Probe;
 const DRAWN: usize = 512;
 const SHAPES: [&str; 6] = ["sphere", "disk", "rectangle", "polygon", "tube", "tube with caps"];
 const IRRADIANCE: [&str; 5] = ["form-factor", "centre", "representative-point", "structured-sampling", "reference"];
-const HIGHLIGHT: [&str; 6] = ["none", "representative-point", "d-modification", "overlap", "ltc", "reference"];
+const HIGHLIGHT: [&str; 7] = [
+    "none",
+    "representative-point",
+    "d-modification",
+    "overlap",
+    "ltc",
+    "ltc-anisotropic",
+    "reference",
+];
 /// Roughness from 0.02 to 1, squared.
 const ALPHAS: [f64; 5] = [4e-4, 0.01, 0.04, 0.25, 1.0];
 

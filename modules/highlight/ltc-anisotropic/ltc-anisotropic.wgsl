@@ -93,15 +93,18 @@ fn highlight(i: u32, s: Surface, v: vec3f) -> vec3f {
     let grazing = toward / narrow;
     let thick = ratio + abs(d) * (0.5 * major * sine * m + 2.0 * abs(c) * grazing * grazing * (1.0 - 0.7 * major));
     let skew = sine / narrow;
-    // The columns over what they vanish with: the wider width, the thickness, 1.
+    // The columns over what they vanish with, the wider width, the thickness and 1; the first two without what they have of the third.
     let first = 2.0 * vec2f(c, -narrow * d);
     let second = 2.0 * vec2f(d, narrow * c);
-    let x = vec3f(first * cell.a.x + second * (cell.a.y * c * d), cell.b.x * skew * c);
-    let y = vec3f(second * cell.b.y, cell.c.x * skew * d / thick);
+    let x = vec3f(first * cell.a.x + second * (cell.a.y * c * d), 0.0);
+    let y = vec3f(second * cell.b.y, 0.0);
     let z = vec3f((first * (cell.c.y * c) + second * (cell.d.x * d)) * (skew * major), cell.d.y);
     // Rows of M^-1, their common length left out.
+    let row0 = cross(y, z);
+    let row1 = cross(z, x);
+    let row2 = cross(x, y) - row0 * (cell.b.x * skew * c) - row1 * (cell.c.x * skew * d / thick);
     let local = mat3x3f(forward, side, axis);
-    let rows = mat3x3f(local * (cross(y, z) * thick), local * cross(z, x), local * (cross(x, y) * (thick * major)));
+    let rows = mat3x3f(local * (row0 * thick), local * row1, local * (row2 * (thick * major)));
     let factor = shape_form_factor(i, s.position, transpose(rows));
 
     let miss = 1.0 - m;

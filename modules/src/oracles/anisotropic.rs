@@ -4,12 +4,13 @@
 //! its axis or by a factor, so seven numbers are free. They are told in the space of half vectors, along the axes of the facets' ellipse:
 //!
 //! ```text
-//! M = U [ (x, x', x") | (0, y, y") | (z, z', z") ],    U = [ 2 (c f - n d s) | 2 (d f + n c s) | axis ]
+//! M = U [ (x, x', 0) + x" Z | (0, y, 0) + y" Z | Z ],    Z = (z, z', z"),    U = [ 2 (c f - n d s) | 2 (d f + n c s) | axis ]
 //! ```
 //!
-//! with c and d the cosine and sine of the view's azimuth from the wider width's direction, s across the plane of incidence, n = cos(theta) + a for the
+//! whose determinant is that of U times x y z": positive between cells as it is in them, so no map turns a light inside out;
+//! c and d are the cosine and sine of the view's azimuth from the wider width's direction, s across the plane of incidence, n = cos(theta) + a for the
 //! width a in that plane, the axis the mirrored view bent toward the normal by a^2, and f across both. For smooth facets x and y are the two widths
-//! and the rest vanishes. Divided by what they vanish with the numbers are smooth and of the order 1, and few cells do.
+//! and all others vanish. Divided by what they vanish with the numbers are smooth and of the order 1, and few cells do.
 
 use std::f64::consts::PI;
 use std::num::NonZero;
@@ -79,21 +80,24 @@ struct Basis {
 
 impl Basis {
     fn map(&self, at: &Parameters) -> DMat3 {
-        let x = DVec3::new(libm::exp(at[0]) * self.major, at[1] * self.major, at[2] * self.skew);
-        let y = DVec3::new(0.0, libm::exp(at[3]) * self.minor, at[4] * self.skew);
         let z = DVec3::new(at[5] * self.skew, at[6] * self.skew, 1.0);
+        let x = DVec3::new(libm::exp(at[0]) * self.major, at[1] * self.major, 0.0) + z * (at[2] * self.skew);
+        let y = DVec3::new(0.0, libm::exp(at[3]) * self.minor, 0.0) + z * (at[4] * self.skew);
         self.axes * DMat3::from_cols(x, y, z)
     }
 
     /// [`Self::map`] undone, with the whole lobe's integral.
     fn parameters(&self, map: &DMat3, whole: f64) -> Parameters {
         let inner = self.axes.inverse() * *map;
-        let (p, q) = (inner.x_axis.x, inner.y_axis.x);
         let scale = 1.0 / inner.z_axis.z;
-        let turned = scale / (p * p + q * q).sqrt();
-        let x = (inner.x_axis * p + inner.y_axis * q) * turned;
-        let y = (inner.y_axis * p - inner.x_axis * q) * turned;
-        let z = inner.z_axis * (scale / self.skew);
+        let z = inner.z_axis * scale;
+        // What they have of z, in the place of their last number.
+        let level = |column: DVec3| (column - z * column.z).truncate().extend(column.z) * scale;
+        let (x, y) = (level(inner.x_axis), level(inner.y_axis));
+        let (p, q) = (x.x, y.x);
+        let turned = 1.0 / (p * p + q * q).sqrt();
+        let (x, y) = ((x * p + y * q) * turned, (y * p - x * q) * turned);
+        let z = z / self.skew;
         let logs = (libm::log(x.x / self.major), libm::log(y.y / self.minor));
         [
             logs.0,
@@ -189,9 +193,9 @@ impl View {
         [
             x * scale,
             at[1] * scale / (c * d),
-            at[2] * scale / c,
+            at[2] / c,
             y * scale,
-            at[4] * scale / d,
+            at[4] / d,
             at[5] * scale / c,
             at[6] * scale / d,
             scale,
@@ -204,11 +208,12 @@ impl View {
     fn map(&self, cell: &[f64; NUMBERS]) -> (DMat3, f64, f64) {
         let Basis { axes, major, minor, skew } = self.basis();
         let (c, d) = self.azimuth;
-        let x = DVec3::new(cell[0] * major, cell[1] * major * c * d, cell[2] * skew * c);
-        let y = DVec3::new(0.0, cell[3] * minor, cell[4] * skew * d);
         let z = DVec3::new(cell[5] * skew * c, cell[6] * skew * d, cell[7]);
+        let x = DVec3::new(cell[0] * major, cell[1] * major * c * d, 0.0) + z * (cell[2] * skew * c);
+        let y = DVec3::new(0.0, cell[3] * minor, 0.0) + z * (cell[4] * skew * d);
         let map = axes * DMat3::from_cols(x, y, z);
-        (map.inverse(), cell[8], cell[9] + cell[8] * level(libm::cos(self.theta)))
+        let grazing = f64::max(cell[9] + cell[8] * level(libm::cos(self.theta)), 0.0);
+        (map.inverse(), cell[8], grazing)
     }
 
     /// Fits the lobe, from the isotropic one's map stretched and, where that is given, from a neighbour's: the numbers, and B over A.
