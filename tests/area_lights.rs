@@ -19,13 +19,14 @@ use shadewright::runtime::probe::Probe;
 const DRAWN: usize = 512;
 const SHAPES: [&str; 6] = ["sphere", "disk", "rectangle", "polygon", "tube", "tube with caps"];
 const IRRADIANCE: [&str; 5] = ["form-factor", "centre", "representative-point", "structured-sampling", "reference"];
-const HIGHLIGHT: [&str; 7] = [
+const HIGHLIGHT: [&str; 8] = [
     "none",
     "representative-point",
     "d-modification",
     "overlap",
     "ltc",
     "phong-lobe",
+    "ltc-anisotropic",
     "reference",
 ];
 /// Roughness from 0.02 to 1, squared.

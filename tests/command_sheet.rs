@@ -140,7 +140,7 @@ fn what_cannot_be_shown_is_refused() {
     refused("size[0]=[10, -1]", 1, &["sphere.scene.ron"]);
     // A pass is no BRDF.
     refused("materials.ball.brdf=\"display\"", 1, &["sphere.scene.ron:10"]);
-    let many = "materials.ball.brdf=(fits: Open, of: \"pass\")";
+    let many = "materials.ball.brdf=(fits: Open, of: \"material\")";
     refused(many, 1, &["are more than a sheet holds, 1024"]);
     let brdf = "materials.ball.brdf=[\"ward\"]";
     let large = ["sheet", SCENE, "--each", brdf, "--size", "16000x16000", "-o", file];

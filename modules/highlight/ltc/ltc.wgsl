@@ -18,7 +18,7 @@ fn along_row(k: u32, share: f32) -> Cell {
 /// The table between four cells, for the cosine m of the angle of incidence. alpha is at least 1e-4, which keeps m = 0 from 0 / 0.
 fn cell_at(alpha: f32, m: f32) -> Cell {
     let last = f32(COSINE_SIDE - 1u);
-    let place = last * sqrt(min(vec2f(m * (1.0 + alpha) / (m + alpha), alpha), vec2f(1.0)));
+    let place = last * min(vec2f(sqrt(m * (1.0 + alpha) / (m + alpha)), roughness_of_alpha(alpha)), vec2f(1.0));
     let corner = min(floor(place), vec2f(last - 1.0));
     let share = place - corner;
     let k = COSINE_SIDE * u32(corner.y) + u32(corner.x);

@@ -152,15 +152,18 @@ impl Cosine {
         (DMat3::from_cols(x, DVec3::Y, z) * turn(-theta).transpose(), cell[4], grazing)
     }
 
-    const PARAMETERS: usize = 5;
+    const fn parameters(&self) -> [f64; 5] {
+        [self.tilt, self.along, self.across, self.shear, self.amplitude]
+    }
 
-    fn parameter(&mut self, index: usize) -> &mut f64 {
-        match index {
-            0 => &mut self.tilt,
-            1 => &mut self.along,
-            2 => &mut self.across,
-            3 => &mut self.shear,
-            _ => &mut self.amplitude,
+    const fn with(self, [tilt, along, across, shear, amplitude]: [f64; 5]) -> Self {
+        Self {
+            tilt,
+            along,
+            across,
+            shear,
+            amplitude,
+            ..self
         }
     }
 
@@ -235,59 +238,6 @@ impl Cosine {
         spaces
     }
 
-    /// Levenberg 1944 and Marquardt 1963, damped by the diagonal. Of the crates that do this each goes through a library of linear algebra with kernels by
-    /// processor; five unknowns need none, and the bits must not depend on the machine.
-    fn descend(&mut self, spaces: &[HalfSpace], whole: f64) {
-        let mut residuals = Vec::new();
-        let mut trial = Vec::new();
-        let mut slopes: [Vec<f64>; Self::PARAMETERS] = Default::default();
-        let mut error = self.residuals(spaces, whole, &mut residuals);
-        let mut damping = 1e-2;
-        for _ in 0..100 {
-            for (index, slope) in slopes.iter_mut().enumerate() {
-                let mut moved = *self;
-                *moved.parameter(index) += 1e-6;
-                moved.residuals(spaces, whole, &mut trial);
-                slope.clear();
-                slope.extend(trial.iter().zip(&residuals).map(|(after, before)| (after - before) * 1e6));
-            }
-            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            let mut normal = [[0.0; Self::PARAMETERS + 1]; Self::PARAMETERS];
-            for (row, a) in normal.iter_mut().zip(&slopes) {
-                for (entry, b) in row.iter_mut().zip(&slopes) {
-                    *entry = dot(a, b);
-                }
-                row[Self::PARAMETERS] = -dot(a, &residuals);
-            }
-            let mut is_done = true;
-            for _ in 0..12 {
-                let mut damped = normal;
-                for (index, row) in damped.iter_mut().enumerate() {
-                    // A parameter that changes nothing stays where it is.
-                    row[index] += row[index] * damping + 1e-14;
-                }
-                let step = solve(damped);
-                let mut moved = *self;
-                for (index, by) in step.iter().enumerate() {
-                    *moved.parameter(index) += by.clamp(-1.0, 1.0);
-                }
-                let after = moved.residuals(spaces, whole, &mut trial);
-                if after < error {
-                    is_done = error - after < 1e-9 * error;
-                    std::mem::swap(&mut residuals, &mut trial);
-                    (*self, error) = (moved, after);
-                    damping = f64::max(damping * 0.2, 1e-9);
-                    break;
-                }
-                damping *= 5.0;
-            }
-            if is_done {
-                break;
-            }
-        }
-        self.error = error.sqrt();
-    }
-
     /// Fits a lobe at a width and an angle of incidence, radians.
     pub fn fit(lobe: Lobe, alpha: f64, theta: f64) -> Self {
         let samples = lobe(alpha, DVec3::new(libm::sin(theta), 0.0, libm::cos(theta)), STRATA);
@@ -313,7 +263,12 @@ impl Cosine {
             error: 0.0,
         };
         // Around the lobe's own middle and widths, not around the fit: that would be free to look away from what it misses.
-        fit.descend(&fit.half_spaces(&samples), whole);
+        let spaces = fit.half_spaces(&samples);
+        let (parameters, error) = descend(fit.parameters(), |at, out| fit.with(*at).residuals(&spaces, whole, out));
+        fit = Self {
+            error: error.sqrt(),
+            ..fit.with(parameters)
+        };
         // A share; the fit may want a hundredth more.
         fit.amplitude = f64::min(fit.amplitude, 0.0);
         fit.fresnel = libm::exp(fit.amplitude) * fresnel / whole;
@@ -335,8 +290,63 @@ fn median(samples: &[Sample], of: impl Fn(DVec3) -> f64) -> f64 {
     0.0
 }
 
-/// Solves the system whose right side is the last column. Gauss, with pivots by column.
-fn solve<const N: usize, const M: usize>(mut rows: [[f64; M]; N]) -> [f64; N] {
+/// Where a sum of squared residuals is least, and that sum: Levenberg 1944 and Marquardt 1963, damped by the diagonal. Of the crates that do this each goes
+/// through a library of linear algebra with kernels by processor; a few unknowns need none, and the bits must not depend on the machine.
+pub(super) fn descend<const N: usize>(from: [f64; N], of: impl Fn(&[f64; N], &mut Vec<f64>) -> f64) -> ([f64; N], f64) {
+    let mut at = from;
+    let mut residuals = Vec::new();
+    let mut trial = Vec::new();
+    let mut slopes: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
+    let mut error = of(&at, &mut residuals);
+    let mut damping = 1e-2;
+    for _ in 0..100 {
+        for (index, slope) in slopes.iter_mut().enumerate() {
+            let mut moved = at;
+            moved[index] += 1e-6;
+            of(&moved, &mut trial);
+            slope.clear();
+            slope.extend(trial.iter().zip(&residuals).map(|(after, before)| (after - before) * 1e6));
+        }
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut normal = [[0.0; N]; N];
+        let mut right = [0.0; N];
+        for ((row, right), a) in normal.iter_mut().zip(&mut right).zip(&slopes) {
+            for (entry, b) in row.iter_mut().zip(&slopes) {
+                *entry = dot(a, b);
+            }
+            *right = -dot(a, &residuals);
+        }
+        let mut is_done = true;
+        for _ in 0..12 {
+            let mut damped = normal;
+            for (index, row) in damped.iter_mut().enumerate() {
+                // A parameter that changes nothing stays where it is.
+                row[index] += row[index] * damping + 1e-14;
+            }
+            let step = solve(damped, right);
+            let mut moved = at;
+            for (number, by) in moved.iter_mut().zip(step) {
+                *number += by.clamp(-1.0, 1.0);
+            }
+            let after = of(&moved, &mut trial);
+            if after < error {
+                is_done = error - after < 1e-9 * error;
+                std::mem::swap(&mut residuals, &mut trial);
+                (at, error) = (moved, after);
+                damping = f64::max(damping * 0.2, 1e-9);
+                break;
+            }
+            damping *= 5.0;
+        }
+        if is_done {
+            break;
+        }
+    }
+    (at, error)
+}
+
+/// Solves a system. Gauss, with pivots by column.
+fn solve<const N: usize>(mut rows: [[f64; N]; N], mut right: [f64; N]) -> [f64; N] {
     for column in 0..N {
         let mut pivot = column;
         for row in column + 1..N {
@@ -345,17 +355,19 @@ fn solve<const N: usize, const M: usize>(mut rows: [[f64; M]; N]) -> [f64; N] {
             }
         }
         rows.swap(column, pivot);
+        right.swap(column, pivot);
         let above = rows[column];
-        for row in &mut rows[column + 1..] {
-            let factor = row[column] / above[column];
-            for (entry, above) in row.iter_mut().zip(&above) {
+        for row in column + 1..N {
+            let factor = rows[row][column] / above[column];
+            for (entry, above) in rows[row].iter_mut().zip(&above) {
                 *entry -= factor * above;
             }
+            right[row] -= factor * right[column];
         }
     }
     let mut solution = [0.0; N];
     for row in (0..N).rev() {
-        let mut rest = rows[row][N];
+        let mut rest = right[row];
         for column in row + 1..N {
             rest -= rows[row][column] * solution[column];
         }

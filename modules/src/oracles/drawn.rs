@@ -48,6 +48,52 @@ pub fn ggx(alpha: f64, v: DVec3, strata: usize) -> Vec<Sample> {
     middles(strata).filter_map(draw).collect()
 }
 
+/// Widths of anisotropic facets as a viewer sees them: the columns (along, skew) and (0, across) of the lower triangle whose product with its transpose is
+/// the ellipse of the facets' slopes, x toward the viewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Widths {
+    /// Width in the plane of incidence.
+    pub along: f64,
+    /// How much the slope across it grows with that along it, times `along`.
+    pub skew: f64,
+    /// Width of the slope across at a given one along.
+    pub across: f64,
+}
+
+impl Widths {
+    /// Of the widths along the tangent and across it, for a viewer at the azimuth whose cosine and sine from the tangent are given.
+    pub fn seen(along: f64, across: f64, (cosine, sine): (f64, f64)) -> Self {
+        let (x, y) = (along * along, across * across);
+        let toward = (x * cosine * cosine + y * sine * sine).sqrt();
+        Self {
+            along: toward,
+            skew: (y - x) * cosine * sine / toward,
+            across: along * across / toward,
+        }
+    }
+}
+
+/// GGX of two widths (Burley 2012; Heitz 2014, eqs. 85 and 99), drawn as the viewer sees them: slopes are those of facets of the width 1, stretched.
+pub fn ggx_anisotropic(widths: Widths, v: DVec3, strata: usize) -> Vec<Sample> {
+    let Widths { along, skew, across } = widths;
+    let lambda = |w: DVec3| {
+        let (x, y) = (along * w.x + skew * w.y, across * w.y);
+        let s2 = (x * x + y * y) / (w.z * w.z);
+        0.5 * s2 / ((1.0 + s2).sqrt() + 1.0)
+    };
+    let stretched = DVec3::new(along * v.x, 0.0, v.z).normalize();
+    let masked = 1.0 + lambda(v);
+    let draw = |(around, up): (f64, f64)| {
+        let z = (1.0 - up) * (1.0 + stretched.z) - stretched.z;
+        let sine = f64::max(1.0 - z * z, 0.0).sqrt();
+        let phi = 2.0 * PI * around;
+        let cap = DVec3::new(sine * libm::cos(phi), sine * libm::sin(phi), z) + stretched;
+        let h = DVec3::new(along * cap.x, skew * cap.x + across * cap.y, f64::max(cap.z, 1e-300)).normalize();
+        reflected(v, h, |l, _| masked / (masked + lambda(l)) / (strata * strata) as f64)
+    };
+    middles(strata).filter_map(draw).collect()
+}
+
 /// A facet drawn from Beckmann's distribution (Walter et al. 2007, eqs. 28 and 29).
 fn beckmann_facet(alpha: f64, (around, up): (f64, f64)) -> DVec3 {
     let tangent = alpha * (-libm::log(1.0 - up)).sqrt();

@@ -9,6 +9,7 @@
 //! what its modules approximate.
 
 pub mod albedo;
+pub mod anisotropic;
 pub mod appearance;
 pub mod area;
 pub mod cosines;
