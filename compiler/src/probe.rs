@@ -9,7 +9,7 @@ use crate::catalog::{Catalog, Module, Variants};
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::manifest::{Arity, Filling, ModuleManifest, Node, Resource, ResourceKind, Slot};
 use crate::parse::lex::Kind;
-use crate::parse::scan::{Item, ItemKind, Scan};
+use crate::parse::scan::{Field, Item, ItemKind, Scan};
 use crate::plan::Roots;
 use crate::program::{Program, Recipe};
 use crate::resolve::{Instances, Place, resolve_root};
@@ -45,6 +45,14 @@ impl Catalog {
                     .into(),
             );
         };
+        let pointer = |field: &&Field| interface.file.text[interface.scan.bytes(&field.ty)].starts_with("ptr");
+        if let Some(field) = item.fields.iter().find(pointer) {
+            let message = format!("`{function}` of `{}` cannot be probed", root.category);
+            return Err(Diagnostic::new(codes::UNKNOWN_PROBE, message)
+                .at(&recipe.source, place.name_span(), format!("a module of `{}`", root.category))
+                .note(format!("`{}` is a pointer, and a table of inputs holds values", field.name))
+                .into());
+        }
         let text = probe_text(&interface.file.text, &interface.scan, item);
         let source = SourceFile::new("probe", "");
         let manifest = probe_manifest(&root.category);

@@ -201,7 +201,11 @@ pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
 pub fn links(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     let root = context.catalog.module(&recipe.root.module)?;
     let functions = context.catalog.functions(&root.category)?;
-    let linked = match functions.keys().next() {
+    let can_be_probed = |function: &&String| {
+        let signature = context.catalog.signature(&root.category, function).ok().flatten();
+        signature.is_none_or(|signature| signature.arguments.values().all(|ty| !ty.starts_with("ptr")))
+    };
+    let linked = match functions.keys().find(can_be_probed) {
         None => context.catalog.compile(recipe, super::tree::ROOT),
         Some(function) => context.catalog.compile_probe(recipe, function),
     };

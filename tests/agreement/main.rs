@@ -51,7 +51,11 @@ const OPEN: &[(&str, f64, &str)] = &[
         "the same, and of a square's sides, which alone are drawn here, either may be the longer one",
     ),
     ("light/tube light", 0.5, "the same, line by line"),
-    ("highlight/phong-lobe highlight", 0.4, "the same, and turns around the lobe are counted"),
+    (
+        "highlight/phong-lobe highlight",
+        0.4,
+        "the same, and turns around the lobe are counted",
+    ),
 ];
 /// Largest share of numbers of a function of which nothing can be said.
 const MOST_OPEN: f64 = 0.3;

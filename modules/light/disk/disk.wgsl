@@ -8,13 +8,13 @@ fn surface_area(i: u32) -> f32 {
     return PI * max(instances[i].radius * instances[i].radius, 1e-12);
 }
 
-/// Luminance, with the flux spread over all that shines: phi / (pi A).
+/// Luminance, or a flux spread over all that shines: phi / (pi A).
 fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
     var area = surface_area(i);
     if params.two_sided {
         area *= 2.0;
     }
-    return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * area));
+    return instances[i].color * select(instances[i].luminance, instances[i].flux / (PI * area), instances[i].flux > 0.0);
 }
 
 fn shape_centre(i: u32) -> vec3f {

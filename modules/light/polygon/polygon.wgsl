@@ -60,10 +60,10 @@ fn cover(i: u32, at: vec2f) -> vec2i {
     return covers;
 }
 
-/// Luminance, with the flux spread over all that shines: phi / (pi A); no less than 1e-12 m2.
+/// Luminance, or a flux spread over all that shines: phi / (pi A); no less than 1e-12 m2.
 fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
     let area = max(abs(outline(i).area), 1e-12) * select(1.0, 2.0, params.two_sided);
-    return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * area));
+    return instances[i].color * select(instances[i].luminance, instances[i].flux / (PI * area), instances[i].flux > 0.0);
 }
 
 fn shape_centre(i: u32) -> vec3f {

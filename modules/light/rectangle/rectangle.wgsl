@@ -17,7 +17,7 @@ fn pictured(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f 
     return picture(0.5 + vec2f(seen.x, -seen.y) * per_size, seen.zw * per_size);
 }
 
-/// Luminance, with the flux spread over all that shines: phi / (pi A), over the mean of a picture.
+/// Luminance, or a flux spread over all that shines: phi / (pi A), over the mean of a picture.
 fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
     var area = surface_area(i);
     if params.two_sided {
@@ -27,7 +27,7 @@ fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) ->
         // Of a black picture nothing can have a flux.
         area *= max(luminance(picture_mean()), 1e-6);
     }
-    let full = instances[i].color * (instances[i].luminance + instances[i].flux / (PI * area));
+    let full = instances[i].color * select(instances[i].luminance, instances[i].flux / (PI * area), instances[i].flux > 0.0);
     if params.pictured {
         return full * pictured(i, origin, n, along, alpha);
     }

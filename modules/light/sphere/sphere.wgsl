@@ -1,7 +1,7 @@
-/// Luminance, with the flux spread over the surface: phi / (pi A), A = 4 pi r^2. The floor stands for a radius of a thousandth of a millimetre.
+/// Luminance, or a flux spread over the surface: phi / (pi A), A = 4 pi r^2. The floor stands for a radius of a thousandth of a millimetre.
 fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
     let area = 4.0 * PI * max(instances[i].radius * instances[i].radius, 1e-12);
-    return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * area));
+    return instances[i].color * select(instances[i].luminance, instances[i].flux / (PI * area), instances[i].flux > 0.0);
 }
 
 fn shape_centre(i: u32) -> vec3f {

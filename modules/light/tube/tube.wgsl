@@ -3,11 +3,11 @@ fn axis(i: u32) -> vec3f {
     return unit_or(instances[i].along, vec3f(1.0, 0.0, 0.0));
 }
 
-/// Luminance, with the flux spread over all that shines: phi / (pi A). The floor stands for a square of a thousandth of a millimetre.
+/// Luminance, or a flux spread over all that shines: phi / (pi A). The floor stands for a square of a thousandth of a millimetre.
 fn shape_luminance(i: u32, origin: vec3f, n: vec3f, along: vec3f, alpha: f32) -> vec3f {
     let ends = select(0.0, instances[i].radius, params.caps);
     let area = 2.0 * PI * instances[i].radius * (instances[i].length + ends);
-    return instances[i].color * (instances[i].luminance + instances[i].flux / (PI * max(area, 1e-12)));
+    return instances[i].color * select(instances[i].luminance, instances[i].flux / (PI * max(area, 1e-12)), instances[i].flux > 0.0);
 }
 
 fn shape_centre(i: u32) -> vec3f {

@@ -121,9 +121,9 @@ pub fn tube(c: DVec3, along: DVec3, length: f64, radius: f64, normal: DVec3, cap
     sum
 }
 
-/// Luminance of a light with a luminance, cd/m2, and a flux, lm, spread over an area, m2: phi / (pi A).
+/// Luminance of a light with a luminance, cd/m2, or where there is one a flux, lm, spread over an area, m2: phi / (pi A).
 pub fn luminance(luminance: f64, flux: f64, area: f64) -> f64 {
-    luminance + flux / (PI * area)
+    if flux > 0.0 { flux / (PI * area) } else { luminance }
 }
 
 #[cfg(test)]
