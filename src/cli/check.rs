@@ -172,7 +172,7 @@ fn cases(context: &Context, module: &str) -> Result<(), Failure> {
 /// Compiles all that a tree can be asked for: the root's entry points, or each function of its interface, and every pass.
 pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     let root = context.catalog.module(&recipe.root.module)?;
-    let functions = context.catalog.functions(&root.category)?;
+    let functions = functions(context, &root.category)?;
     let mut passes = BTreeSet::new();
     let mut note = |program: &shadewright::compiler::Program| {
         let declared = program.reflection().passes.iter();
@@ -181,7 +181,7 @@ pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     if functions.is_empty() {
         note(&context.catalog.compile(recipe, super::tree::ROOT)?);
     }
-    for function in functions.keys() {
+    for function in &functions {
         match context.catalog.compile_probe(recipe, function) {
             Ok(program) => note(&program),
             Err(report) if only_for_fragments(&report) => {}
@@ -194,18 +194,26 @@ pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     Ok(())
 }
 
+/// What of an interface a probe can call: a table of inputs holds no pointers.
+fn functions(context: &Context, category: &str) -> Result<Vec<String>, Failure> {
+    let mut names = Vec::new();
+    for name in context.catalog.functions(category)?.into_keys() {
+        let signature = context.catalog.signature(category, &name)?.unwrap_or_default();
+        if signature.arguments.values().all(|ty| !ty.starts_with("ptr")) {
+            names.push(name);
+        }
+    }
+    Ok(names)
+}
+
 /// Links a tree once, so that what is wrong with it is said with its place.
 ///
 /// # Errors
 /// That.
 pub fn links(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     let root = context.catalog.module(&recipe.root.module)?;
-    let functions = context.catalog.functions(&root.category)?;
-    let can_be_probed = |function: &&String| {
-        let signature = context.catalog.signature(&root.category, function).ok().flatten();
-        signature.is_none_or(|signature| signature.arguments.values().all(|ty| !ty.starts_with("ptr")))
-    };
-    let linked = match functions.keys().find(can_be_probed) {
+    let functions = functions(context, &root.category)?;
+    let linked = match functions.first() {
         None => context.catalog.compile(recipe, super::tree::ROOT),
         Some(function) => context.catalog.compile_probe(recipe, function),
     };
