@@ -52,6 +52,11 @@ const OPEN: &[(&str, f64, &str)] = &[
     ),
     ("light/tube light", 0.5, "the same, line by line"),
     (
+        "highlight/ltc-anisotropic highlight",
+        0.7,
+        "the table is read between the corners of a simplex, and which one a rounded place is in is left open; neighbours meet",
+    ),
+    (
         "highlight/phong-lobe highlight",
         0.4,
         "the same, and turns around the lobe are counted",

@@ -4,6 +4,7 @@
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value as Json;
 pub use shadewright_evaluate::cost::Cost;
 
 /// A number that is `null` where it was not finite.
@@ -146,6 +147,18 @@ pub struct Results {
     pub baseline: String,
     /// One for each alternative.
     pub rows: Vec<Row>,
+    /// All errors; none where a search looks further than the configurations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<Samples>,
+}
+
+/// Configurations and what each row is off by there.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Samples {
+    /// Inputs: those drawn, then the hard ones.
+    pub inputs: Vec<Json>,
+    /// By label of the row, for each input the largest error of the result's numbers, in the experiment's metric; null where it is no number.
+    pub errors: IndexMap<String, Vec<Option<f64>>>,
 }
 
 /// One alternative in one experiment.
@@ -219,13 +232,13 @@ pub struct Errors {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
     /// A row of `probe`'s inputs, to replay it.
-    pub input: serde_json::Value,
+    pub input: Json,
     /// Which of the result's numbers: `x`, `diffuse.y`; empty for a scalar.
     pub component: String,
     /// What the module gave; NaN and infinities as text.
-    pub got: serde_json::Value,
+    pub got: Json,
     /// What it should have given.
-    pub expected: serde_json::Value,
+    pub expected: Json,
 }
 
 /// How often something happened that must not, with one input each that makes it happen.

@@ -8,7 +8,7 @@ use shadewright_runtime::gpu::Gpu;
 use shadewright_runtime::gpu::pipeline::Pipelines;
 use shadewright_runtime::probe::{Probe, Table, time};
 
-use crate::data::{Provenance, Report, Results, Row, Time};
+use crate::data::{Provenance, Report, Results, Row, Samples, Time};
 use crate::experiment::{Experiment, Metric, TruthSource};
 use crate::measure::{Effort, Known, MeasureError, Measured, OnDevice, Subject, configurations, key, mark_dominated, measure};
 
@@ -158,6 +158,7 @@ impl Run<'_> {
         let mut subjects = Vec::new();
         let mut rows: Vec<Row> = Vec::new();
         let mut hard = 0;
+        let mut samples: Option<Samples> = None;
         for alternative in &experiment.alternatives {
             let name = format!("{}: {}", experiment.name, alternative.label);
             self.step(&name)?;
@@ -168,6 +169,13 @@ impl Run<'_> {
             match measured {
                 Ok((subject, (measured, count))) => {
                     hard = hard.max(count);
+                    if !measured.errors.is_empty() {
+                        let samples = samples.get_or_insert_with(|| Samples {
+                            inputs: configurations(&subject, &self.effort).0,
+                            ..Samples::default()
+                        });
+                        samples.errors.insert(measured.row.label.clone(), measured.errors);
+                    }
                     rows.push(measured.row);
                     self.report.agreement.extend(measured.agreement);
                     subjects.push(subject);
@@ -202,6 +210,7 @@ impl Run<'_> {
             seed: experiment.declared.seed,
             comparable,
             baseline,
+            samples,
             rows,
         });
         Ok(())

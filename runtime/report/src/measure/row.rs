@@ -146,6 +146,9 @@ pub(crate) struct Measured {
     pub row: Row,
     /// Device against evaluator; none without a device.
     pub agreement: Option<Agreement>,
+    /// Error of each configuration against a truth that is sampled; none against others.
+    #[serde(default)]
+    pub errors: Vec<Option<f64>>,
 }
 
 /// A device to measure on, with its pipelines.
@@ -267,7 +270,12 @@ pub(crate) fn measure(subject: &Subject, device: Option<OnDevice>, effort: &Effo
         dominated: false,
         picture,
     };
-    Ok(Measured { row, agreement })
+    let sizes = precise.iter().zip(expected).map(|(got, truth)| largest(metric, got, truth).0);
+    let errors = match subject.is_sampled() {
+        true => sizes.map(|size| Some(size).filter(|size| size.is_finite())).collect(),
+        false => Vec::new(),
+    };
+    Ok(Measured { row, agreement, errors })
 }
 
 /// What a row's results depend on, in one word: the linked function, its tables, the inputs, what they should give, the device, the effort.

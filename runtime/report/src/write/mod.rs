@@ -61,7 +61,7 @@ pub enum WriteError {
 }
 
 /// All files of a report, relative names (with `/`) and bytes: `report.html`, `report.json`, `rows.csv`, for each experiment
-/// of two rows or more `plots/NAME-error` and `plots/NAME-rounding` as `.svg` and `.png`, and `pictures/NAME.png` for each row that has a picture.
+/// of two rows or more `plots/NAME-error` and `plots/NAME-rounding` as `.svg` and `.png`, `plots/NAME-all` where there are all errors, and `pictures/NAME.png` for each row that has a picture.
 /// Names are unique, also where letters' case does not count. The caller writes them.
 ///
 /// # Errors

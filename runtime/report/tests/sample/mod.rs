@@ -107,6 +107,7 @@ fn experiment(name: &str, title: &str, rows: Vec<Row>) -> Results {
         comparable: true,
         baseline: rows.first().map(|row| row.label.clone()).unwrap_or_default(),
         rows,
+        samples: None,
     };
     decide(&mut results);
     results

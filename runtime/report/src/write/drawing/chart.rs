@@ -65,7 +65,7 @@ pub fn draw(plot: &Plot) -> Result<Drawing, WriteError> {
     Ok(drawing)
 }
 
-fn text(at: [f64; 2], text: impl Into<String>, size: f64, colour: Colour, anchor: Anchor) -> Mark {
+pub fn text(at: [f64; 2], text: impl Into<String>, size: f64, colour: Colour, anchor: Anchor) -> Mark {
     Mark::Text {
         at,
         text: text.into(),
@@ -76,7 +76,7 @@ fn text(at: [f64; 2], text: impl Into<String>, size: f64, colour: Colour, anchor
     }
 }
 
-fn line(from: [f64; 2], to: [f64; 2], colour: Colour, width: f64) -> Mark {
+pub fn line(from: [f64; 2], to: [f64; 2], colour: Colour, width: f64) -> Mark {
     Mark::Line {
         points: vec![from, to],
         colour,
@@ -116,15 +116,10 @@ fn axes(marks: &mut Vec<Mark>, plot: &Plot, across: &Axis, up: &Axis) {
         marks.extend(across.cuts().map(|x| line([x + side, top], [x + side, bottom], Colour::Axis, 1.0)));
         marks.extend(up.cuts().map(|y| line([left, y + side], [right, y + side], Colour::Axis, 1.0)));
     }
-    for (x, y, label) in [(across.zero, up.zero, "0"), (across.infinite, up.infinite, "∞")] {
+    for (x, label) in [(across.zero, "0"), (across.infinite, "∞")] {
         marks.extend(x.map(|x| text([x, bottom + 13.0], label, SMALL, Colour::Ink, Anchor::Middle)));
-        marks.extend(y.map(|y| text([left - 7.0, y], label, SMALL, Colour::Ink, Anchor::End)));
     }
-    marks.push(Mark::Line {
-        points: vec![[left, top], [left, bottom], [right, bottom]],
-        colour: Colour::Axis,
-        width: 1.25,
-    });
+    upright(marks, up, AREA);
     marks.push(text([10.0, 16.0], short(&plot.title, 68), 15.0, Colour::Ink, Anchor::Start));
     marks.push(text([10.0, 42.0], short(&plot.error, 78), TEXT, Colour::Faint, Anchor::Start));
     marks.push(text(
@@ -134,6 +129,33 @@ fn axes(marks: &mut Vec<Mark>, plot: &Plot, across: &Axis, up: &Axis) {
         Colour::Faint,
         Anchor::End,
     ));
+}
+
+/// The axis of errors at the left of an area, with its ticks, and the area's own two lines.
+pub fn upright(marks: &mut Vec<Mark>, up: &Axis, [left, top, right, bottom]: [f64; 4]) {
+    for tick in up.ticks() {
+        let (to, colour) = if tick.label.is_some() {
+            (right, Colour::Grid)
+        } else {
+            (left + 4.0, Colour::Axis)
+        };
+        marks.push(line([left, tick.at], [to, tick.at], colour, 1.0));
+        marks.extend(
+            tick.label
+                .map(|label| text([left - 7.0, tick.at], label, SMALL, Colour::Faint, Anchor::End)),
+        );
+    }
+    for side in [-1.5, 1.5] {
+        marks.extend(up.cuts().map(|y| line([left, y + side], [right, y + side], Colour::Axis, 1.0)));
+    }
+    for (y, label) in [(up.zero, "0"), (up.infinite, "∞")] {
+        marks.extend(y.map(|y| text([left - 7.0, y], label, SMALL, Colour::Ink, Anchor::End)));
+    }
+    marks.push(Mark::Line {
+        points: vec![[left, top], [left, bottom], [right, bottom]],
+        colour: Colour::Axis,
+        width: 1.25,
+    });
 }
 
 /// The border of what some row dominates: a staircase through the rows that none does, from the cheapest.

@@ -7,6 +7,7 @@ pub mod label;
 pub mod paint;
 pub mod pareto;
 pub mod picture;
+pub mod quantiles;
 
 use colour::Colour;
 
@@ -134,6 +135,11 @@ fn of_experiment(results: &Results, name: String, names: &mut Names) -> Result<F
             figures.plots.push(paint::figure(path, &chart::draw(&plot)?)?);
             figures.captions.push(plot.caption());
         }
+    }
+    if let Some(samples) = &results.samples {
+        let path = format!("plots/{}-all", figures.name);
+        figures.plots.push(paint::figure(path, &quantiles::draw(results, samples)?)?);
+        figures.captions.push(quantiles::caption(results, samples));
     }
     for row in &results.rows {
         if let Some(picture) = &row.picture {
