@@ -57,8 +57,8 @@ fn the_library_holds_exactly_what_is_legal() {
         .collect();
     let number = files.len();
     files.push(file("shadows.space.ron"));
-    // The whole library has more reflectance than can be multiplied out: with one module of each kind it can, shadows and maps and rules as they are.
-    let kinds = ["material", "brdf", "ndf", "masking", "fresnel", "diffuse"];
+    // The whole library has more reflectance and lights than can be multiplied out: with one or two modules of each kind it can, shadows and maps and rules as they are.
+    let kinds = ["material", "brdf", "ndf", "masking", "fresnel", "diffuse", "light", "falloff"];
     let kept = [
         "metalness",
         "lambert",
@@ -67,6 +67,9 @@ fn the_library_holds_exactly_what_is_legal() {
         "smith-ggx-correlated",
         "schlick",
         "lambertian",
+        "point",
+        "directional",
+        "frostbite",
     ];
     let others = CATALOG.modules().filter(|m| {
         m.category == "pass" && m.name != "forward" || kinds.contains(&m.category.as_str()) && !kept.contains(&m.name.as_str())

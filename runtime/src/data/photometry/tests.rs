@@ -72,6 +72,8 @@ fn flux_of_a_cosine() {
     let scaled = coarse.replace("2 500 1 ", "1 -1 3 ").replace("1 1 100\n", "0.5 2 100\n");
     near(read(&scaled).flux(), 1.5 * 3_139.597_4, 1e-7);
     assert_eq!(read(&scaled).lamps, None);
+    // Behind a mark of UTF-8 the first line is still the first.
+    near(read(&format!("\u{feff}{scaled}")).flux(), 1.5 * 3_139.597_4, 1e-7);
     // Before 1995 the second factor counts.
     near(read(&scaled.replace("IESNA:LM-63-2002", "IESNA91")).flux(), 3.0 * 3_139.597_4, 1e-7);
     near(read(&scaled.replace("IESNA:LM-63-2002\n", "")).flux(), 3.0 * 3_139.597_4, 1e-7);

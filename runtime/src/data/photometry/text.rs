@@ -59,6 +59,8 @@ fn parse(word: &str, line: usize, what: &str) -> Result<Number, PhotometryError>
 
 impl Text {
     pub fn new(bytes: &[u8]) -> Self {
+        // A mark of UTF-8 says nothing that Latin-1 would need to know.
+        let bytes = bytes.strip_prefix(&[0xef, 0xbb, 0xbf]).unwrap_or(bytes);
         let text: String = bytes.iter().map(|&byte| char::from(byte)).collect();
         // Line ends of all systems; the last line's own end begins no further line.
         let text = text.replace("\r\n", "\n").replace('\r', "\n");

@@ -153,7 +153,7 @@ mod tests {
             .marks
             .iter()
             .filter_map(|mark| match mark {
-                Mark::Text { at, text, .. } if text.len() == 1 => Some(at[1]),
+                Mark::Text { at, text, .. } if ["a", "b", "c"].contains(&text.as_str()) => Some(at[1]),
                 _ => None,
             })
             .collect();
