@@ -22,7 +22,7 @@ use glam::{DMat2, DMat3, DVec2, DVec3};
 use super::cosines::{Cosine, Sample, descend};
 use super::drawn::{Widths, ggx, ggx_anisotropic};
 
-/// Numbers of a cell: x, x', x", y, y", z, z', z" (the map's determinant is 1 in them), A, and B less what level facets would have. See [`View::cell`].
+/// Numbers of a cell: x, x', x", y, y", z, z', z" (the map's determinant is 1 in them), A, and B less what level facets would have. See `View::cell`.
 pub const NUMBERS: usize = 10;
 
 /// Cells along the wider width, the narrower over it, the azimuth, the angle of incidence. The last is where lobes change.

@@ -59,7 +59,7 @@ pub struct Cosine {
     pub error: f64,
 }
 
-/// Numbers of a cell of a table: M^-1 [0][0], [0][2], [2][0] and [2][2], A, and B less what level facets would have. See [`Cosine::cell`].
+/// Numbers of a cell of a table: `M^-1` at `[0][0]`, `[0][2]`, `[2][0]` and `[2][2]`, A, and B less what level facets would have. See [`Cosine::cell`].
 pub const NUMBERS: usize = 6;
 
 /// Rows and columns of the tables that shaders read.
