@@ -42,7 +42,7 @@ pub(crate) struct Effort {
     pub segments: usize,
     /// Side of the picture in points; 0 for none.
     pub picture: usize,
-    /// Most that a search, or looking for jumps, may execute; of a formula that executes much they do less. An addition is 1.
+    /// Most that a search, looking for jumps, or a picture may execute; of a formula that executes much they do less. An addition is 1.
     pub work: f64,
 }
 
@@ -58,7 +58,7 @@ impl Effort {
         },
         segments: 384,
         picture: 64,
-        work: 1e9,
+        work: 5e7,
     };
     /// What a test has time for. Equal on every machine.
     pub const QUICK: Self = Self {
@@ -84,7 +84,9 @@ impl Effort {
         // In one number: of parents and of children its root.
         let of_search = share(search.parents as f64 * search.children as f64 * f64::from(search.generations)).sqrt();
         let part = |whole: usize, share: f64| (whole as f64 * share).ceil() as usize;
+        let of_picture = share((self.picture * self.picture).max(1) as f64).sqrt();
         Self {
+            picture: part(self.picture, of_picture),
             segments: part(self.segments, of_segments),
             search: super::search::Effort {
                 parents: part(search.parents, of_search),
