@@ -195,9 +195,10 @@ impl Gpu {
         let start = Instant::now();
         loop {
             self.check()?;
+            // Long slices: where a wait ends by time while another thread submits or waits, wgpu 30 may panic over a queue that the other one emptied.
             let slice = wgpu::PollType::Wait {
                 submission_index: None,
-                timeout: Some(Duration::from_secs(1)),
+                timeout: Some(Duration::from_secs(60)),
             };
             match self.device.poll(slice) {
                 Ok(_) => return self.check(),
