@@ -81,6 +81,43 @@ fn experiment() -> String {
     text.replace("truth: Own", "truth: Closed(\"ndf/ggx\")")
 }
 
+/// Catches a truth that is given what the alternative reads instead of what it reads itself: what ignores an input would then be compared with the
+/// truth at that input's default, and be right. And all errors of a sampled truth that are left out, or stand in another order than their inputs.
+#[test]
+fn a_truth_reads_its_own_inputs() {
+    for truth in ["Reference", "Sampled"] {
+        let experiment = format!(
+            r#"[(
+                title: "Sizes", alternatives: Of({{"blind": "falloff/blind", "inverse-square": "inverse-square"}}),
+                inputs: {{"distance": Value(0.5), "range": Value(0.0), "size": Log(0.5, 2.0)}}, configurations: 8, hard: [{{"size": Values([2.0])}}],
+                truth: {truth}("inverse-square"), metric: Relative(floor: 1e-6),
+            )]"#
+        );
+        let (_folder, library) = with(&[
+            ("falloff/falloff.experiment.ron", experiment.as_str()),
+            ("falloff/blind/module.ron", "(summary: \"planted\")"),
+            (
+                "falloff/blind/blind.wgsl",
+                "fn falloff(distance: f32, range: f32, size: f32) -> f32 {\n    return 1.0 / (distance * distance);\n}\n",
+            ),
+        ]);
+        let report = report_on(&library, &["falloff"], None, &(), &AtomicBool::new(false)).unwrap();
+        // The hard size is four times the distance: 1 / 0.25 instead of 1 / 4.
+        let blind = row(&report, "blind").model.clone().unwrap();
+        assert!((blind.max - 15.0).abs() < 1e-6, "{truth}: {blind:?}");
+        assert_eq!(row(&report, "inverse-square").model.clone().unwrap().max, 0.0);
+        let samples = &report.experiments[0].samples;
+        assert_eq!(samples.is_some(), truth == "Sampled");
+        if let Some(samples) = samples {
+            assert_eq!(samples.inputs.len(), 9);
+            for (input, error) in samples.inputs.iter().zip(&samples.errors["blind"]) {
+                let size = input["size"].as_f64().unwrap();
+                assert!((error.unwrap() - (4.0 * size * size - 1.0)).abs() < 1e-5, "{input}: {error:?}");
+            }
+        }
+    }
+}
+
 /// Catches a report that averages a bad corner away, that sees no NaN but on a grid, or that does not see what a module costs.
 #[test]
 fn planted_faults_are_found_and_named() {

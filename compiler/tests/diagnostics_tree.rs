@@ -398,6 +398,31 @@ error[SW0213]: `value` has no function `valeu`
   = functions: value
 "#,
     );
+    let walking = library()
+        .category(
+            "walk",
+            "",
+            "fn walk(at: ptr<function, vec2f>, far: f32) -> f32 {\n    return 0.0;\n}\n",
+        )
+        .module(
+            "walk",
+            "ahead",
+            "",
+            "fn walk(at: ptr<function, vec2f>, far: f32) -> f32 {\n    return far;\n}\n",
+        );
+    let recipe = Recipe::parse("test.recipe.ron", "(module: \"ahead\")").unwrap();
+    assert_text(
+        &walking.catalog().unwrap().compile_probe(&recipe, "walk").unwrap_err().render(),
+        r#"
+error[SW0213]: `walk` of `walk` cannot be probed
+  --> test.recipe.ron:1:10
+  |
+1 | (module: "ahead")
+  |          ^^^^^^^ a module of `walk`
+  |
+  = `at` is a pointer, and a table of inputs holds values
+"#,
+    );
 }
 
 /// The error of freezing so.

@@ -172,7 +172,7 @@ fn cases(context: &Context, module: &str) -> Result<(), Failure> {
 /// Compiles all that a tree can be asked for: the root's entry points, or each function of its interface, and every pass.
 pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     let root = context.catalog.module(&recipe.root.module)?;
-    let functions = functions(context, &root.category)?;
+    let functions = context.catalog.functions(&root.category)?;
     let mut passes = BTreeSet::new();
     let mut note = |program: &shadewright::compiler::Program| {
         let declared = program.reflection().passes.iter();
@@ -181,10 +181,10 @@ pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     if functions.is_empty() {
         note(&context.catalog.compile(recipe, super::tree::ROOT)?);
     }
-    for function in &functions {
+    for function in functions.keys() {
         match context.catalog.compile_probe(recipe, function) {
             Ok(program) => note(&program),
-            Err(report) if only_for_fragments(&report) => {}
+            Err(report) if no_probe(&report) => {}
             Err(report) => return Err(report.into()),
         }
     }
@@ -194,38 +194,30 @@ pub fn tree(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What of an interface a probe can call: a table of inputs holds no pointers.
-fn functions(context: &Context, category: &str) -> Result<Vec<String>, Failure> {
-    let mut names = Vec::new();
-    for name in context.catalog.functions(category)?.into_keys() {
-        let signature = context.catalog.signature(category, &name)?.unwrap_or_default();
-        if signature.arguments.values().all(|ty| !ty.starts_with("ptr")) {
-            names.push(name);
-        }
-    }
-    Ok(names)
-}
-
 /// Links a tree once, so that what is wrong with it is said with its place.
 ///
 /// # Errors
 /// That.
 pub fn links(context: &Context, recipe: &Recipe) -> Result<(), Failure> {
     let root = context.catalog.module(&recipe.root.module)?;
-    let functions = functions(context, &root.category)?;
-    let linked = match functions.first() {
-        None => context.catalog.compile(recipe, super::tree::ROOT),
-        Some(function) => context.catalog.compile_probe(recipe, function),
-    };
-    match linked {
-        Err(report) if !only_for_fragments(&report) => Err(report.into()),
-        _ => Ok(()),
+    let functions = context.catalog.functions(&root.category)?;
+    if functions.is_empty() {
+        context.catalog.compile(recipe, super::tree::ROOT)?;
     }
+    for function in functions.keys() {
+        match context.catalog.compile_probe(recipe, function) {
+            Err(report) if no_probe(&report) => {}
+            linked => return Ok(linked.map(|_| ())?),
+        }
+    }
+    Ok(())
 }
 
-/// A function that takes screen-space derivatives (any `textureSample`) links, but only fragments can call it, no probe.
-fn only_for_fragments(report: &Report) -> bool {
-    report.diagnostics.iter().all(|diagnostic| diagnostic.code == codes::WRONG_STAGE)
+/// A function that links but that no probe can call: it takes screen-space derivatives (any `textureSample`), which only fragments have, or a pointer, which
+/// no table of inputs holds.
+fn no_probe(report: &Report) -> bool {
+    let codes = [codes::WRONG_STAGE, codes::UNKNOWN_PROBE];
+    report.diagnostics.iter().all(|diagnostic| codes.contains(&diagnostic.code))
 }
 
 /// A module with its slots' defaults; slots that need a module and have no default get the first that fits.

@@ -1,7 +1,7 @@
 //! The device: found or given, with errors that come back instead of panicking.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::GpuError;
 
@@ -192,24 +192,18 @@ impl Gpu {
     /// # Errors
     /// The device was lost, or did not answer for a quarter of an hour.
     pub fn wait(&self) -> Result<(), GpuError> {
-        let start = Instant::now();
-        loop {
-            self.check()?;
-            // Long slices: where a wait ends by time while another thread submits or waits, wgpu 30 may panic over a queue that the other one emptied.
-            let slice = wgpu::PollType::Wait {
-                submission_index: None,
-                timeout: Some(Duration::from_secs(60)),
-            };
-            match self.device.poll(slice) {
-                Ok(_) => return self.check(),
-                Err(wgpu::PollError::Timeout) if start.elapsed() < PATIENCE => {}
-                Err(error) => {
-                    return Err(GpuError::Driver {
-                        what: "waiting for the GPU".into(),
-                        message: error.to_string(),
-                    });
-                }
-            }
+        self.check()?;
+        // In one wait: where one ends by time while another thread submits or waits, wgpu 30 may panic over a queue that the other one emptied.
+        let all = wgpu::PollType::Wait {
+            submission_index: None,
+            timeout: Some(PATIENCE),
+        };
+        match self.device.poll(all) {
+            Ok(_) => self.check(),
+            Err(error) => Err(GpuError::Driver {
+                what: "waiting for the GPU".into(),
+                message: error.to_string(),
+            }),
         }
     }
 
