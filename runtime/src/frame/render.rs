@@ -80,6 +80,12 @@ impl Renderer {
         self.programs.catalog()
     }
 
+    /// Links from another library from now on, such as the same one after an edit. Programs are linked again; pipelines of programs that come out the
+    /// same are kept, as is what was uploaded.
+    pub fn set_catalog(&mut self, catalog: Arc<Catalog>) {
+        self.programs = Arc::new(Programs::new(catalog));
+    }
+
     /// Pipelines found and made so far.
     pub fn pipeline_counts(&self) -> Counts {
         self.pipelines.counts()

@@ -23,8 +23,9 @@ pub use derive::{MAX_LIGHTS, MAX_SIZE};
 pub use format::{CameraDecl, GltfDecl, LightDecl, ObjectDecl, Scene};
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use shadewright_compiler::diagnostics::{Diagnostic, codes};
+use shadewright_compiler::diagnostics::{Diagnostic, SourceFile, codes};
 use shadewright_compiler::manifest::{Parsed, parse};
 use shadewright_compiler::{Catalog, Report, limits};
 
@@ -73,6 +74,31 @@ impl SceneFile {
     /// What is declared.
     pub fn scene(&self) -> &Scene {
         &self.parsed.value
+    }
+
+    /// The text that it was read from.
+    pub fn source(&self) -> &Arc<SourceFile> {
+        &self.parsed.file
+    }
+
+    /// The folder that files are named from.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// What stands at a path, as it is written; `None` where nothing does.
+    pub fn get(&self, path: &str) -> Option<&str> {
+        path::find(&self.parsed.file.text, path)
+    }
+
+    /// The scene without the field, entry or element at a path.
+    ///
+    /// # Errors
+    /// Nothing stands there, or what is left is no scene.
+    pub fn unset(&self, path: &str) -> Result<Self, Report> {
+        let file = &self.parsed.file;
+        let text = path::unset(&file.name, &file.text, path)?;
+        Self::parse(&file.name, &text, &self.folder)
     }
 
     /// The scene with one value changed: `lights[0].fields.intensity`, `objects[pot].translate`, `post[0].fill.exposure.params.ev100`.

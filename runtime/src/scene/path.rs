@@ -108,15 +108,48 @@ pub fn set(name: &str, text: &str, path: &str, value: &str) -> Result<String, Di
 
 /// Whether something stands at the path.
 fn is_there(text: &str, path: &str) -> bool {
+    find(text, path).is_some()
+}
+
+/// What stands at the path, as it is written; `None` where nothing does.
+pub fn find<'t>(text: &'t str, path: &str) -> Option<&'t str> {
+    let parts = parse(path).ok()?;
     let places = Locator::new(text);
-    let Ok(parts) = parse(path) else {
-        return false;
-    };
+    text.get(places.find(&steps_of(text, &places, &parts))?)
+}
+
+fn steps_of<'a>(text: &str, places: &Locator, parts: &'a Parts) -> Vec<Step<'a>> {
     let mut steps = Vec::new();
-    for (part, _) in &parts {
-        steps.push(step(text, &places, &steps, part));
+    for (part, _) in parts {
+        steps.push(step(text, places, &steps, part));
     }
-    places.find(&steps).is_some()
+    steps
+}
+
+/// The text without the field, entry or element at the path and the comma that follows it.
+///
+/// # Errors
+/// Nothing stands there.
+pub fn unset(name: &str, text: &str, path: &str) -> Result<String, Diagnostic> {
+    let wrong = |label: &str| {
+        let message = format!("`{path}` leads nowhere in `{name}`");
+        Diagnostic::new(codes::BAD_OVERRIDE_PATH, message).at(&SourceFile::new("--unset", path), 0..path.len(), label)
+    };
+    let parts = parse(path).map_err(|(_, why)| wrong(why))?;
+    let places = Locator::new(text);
+    let steps = steps_of(text, &places, &parts);
+    let value = places.find(&steps).ok_or_else(|| wrong("nothing is there"))?;
+    let start = places.find_key(&steps).map_or(value.start, |key| key.start);
+    let rest = &text[value.end..];
+    let comma = rest.trim_start().strip_prefix(',').map(|after| text.len() - after.len());
+    let end = comma.unwrap_or(value.end);
+    // A line of its own goes as a whole.
+    let before = text[..start].trim_end_matches([' ', '\t']);
+    let (start, end) = match (before.ends_with('\n'), text[end..].find('\n')) {
+        (true, Some(line)) if text[end..end + line].trim().is_empty() => (before.len(), end + line + 1),
+        _ => (start, end + text[end..].len() - text[end..].trim_start_matches(' ').len()),
+    };
+    Ok(format!("{}{}", &text[..start], &text[end..]))
 }
 
 /// The step that a part means after those before it.
@@ -297,6 +330,26 @@ mod tests {
             (error.message.as_str(), error.labels[0].span.clone()),
             ("`post[0].fill.curve[*]` leads nowhere in `a.scene.ron`", 18..21)
         );
+    }
+
+    /// Catches a neighbour that goes along, a comma that stays without its element, and an element that is found under another's path.
+    #[test]
+    fn values_are_found_and_removed() {
+        assert_eq!(find(TEXT, "lights[lamp].fields.intensity"), Some("\"800 lm\""));
+        assert_eq!(find(TEXT, "lights[2]"), None);
+        assert_eq!(find(TEXT, "["), None);
+        let without = |path: &str| {
+            let text = unset("a.scene.ron", TEXT, path).unwrap();
+            assert!(ron_options().from_str::<ron::Value>(&text).is_ok(), "{text}");
+            text
+        };
+        assert_eq!(without("size"), TEXT.replace("    size: (4, 3),\n", ""));
+        assert_eq!(without("size[1]"), TEXT.replace("(4, 3)", "(4, )"));
+        assert_eq!(without("lights[0]"), TEXT.replace("        (name: \"sun\", module: \"directional\"),\n", ""));
+        assert_eq!(without("lights[lamp].fields.intensity"), TEXT.replace("\"intensity\": \"800 lm\"", ""));
+        assert_eq!(without("lights[sun].name"), TEXT.replace("name: \"sun\", ", ""));
+        assert_eq!(unset("a.scene.ron", TEXT, "lights[3]").unwrap_err().code, codes::BAD_OVERRIDE_PATH);
+        assert_eq!(unset("a.scene.ron", TEXT, "lights[").unwrap_err().code, codes::BAD_OVERRIDE_PATH);
     }
 
     /// Catches a path that is quietly ignored.

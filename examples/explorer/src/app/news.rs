@@ -1,0 +1,49 @@
+//! Asking the lanes, and hearing what they tell.
+
+use super::{App, Problem};
+use crate::work::{News, Paint};
+
+impl App {
+    /// Takes in what the lanes have told.
+    pub(super) fn hear(&mut self) {
+        let mut news = self.lanes.view.news();
+        news.extend(self.lanes.desk.news());
+        news.extend(self.lanes.long.news());
+        for news in news {
+            self.take(news);
+        }
+    }
+
+    fn take(&mut self, news: News) {
+        match news {
+            News::Painted(painted) => {
+                // Newer than what is shown, if not the newest: the old picture stays no longer than it must.
+                self.problems.clear();
+                self.viewport.show(&self.render_state, *painted);
+            }
+            News::Wrong { version, report } => {
+                if version == self.version {
+                    self.message = crate::work::reason(&report);
+                    self.problems = vec![Problem::Report(report)];
+                }
+            }
+            News::Failed { what, message } => {
+                self.message = format!("{what}: {message}");
+                self.problems = vec![Problem::Other(what.to_owned(), message)];
+            }
+            News::Legal(legal) => {
+                if legal.version == self.version {
+                    self.tree.legal = Some(legal);
+                }
+            }
+        }
+    }
+
+    /// Asks for what the screen shows and is not there yet.
+    pub(super) fn ask(&mut self) {
+        if let Some(size) = self.viewport.wants(self.version, self.document.is_open()) {
+            let shot = self.shot();
+            self.lanes.view.ask(Paint { shot, size });
+        }
+    }
+}

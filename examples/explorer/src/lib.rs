@@ -1,0 +1,25 @@
+//! An interactive explorer of shading permutations: one scene, every choice that it leaves, and what each costs and gets wrong.
+//!
+//! ```text
+//! scene text -> rows of choices -> an edit -> scene text -> frame -> picture, code, costs, errors
+//! (document)    (tree)             (panels)   (document)    (work)   (panels)
+//! ```
+//!
+//! - [`document`]: the scene's text, changed by edits that can be undone. The text is all there is: what is saved, sent and kept over a crash.
+//! - [`tree`]: the modules that stand in the scene, and what else could stand in their places.
+//! - [`work`]: whatever takes longer than a frame of the window, done beside it.
+//! - [`panels`]: what is on the screen.
+//! - [`App`]: all of it together.
+
+#![forbid(unsafe_code)]
+
+mod app;
+pub mod document;
+pub mod panels;
+pub mod scenes;
+mod setup;
+pub mod tree;
+pub mod work;
+
+pub use app::{App, Lanes, Problem, Start};
+pub use setup::setup;

@@ -1,0 +1,56 @@
+//! What takes longer than a frame of the window is done beside it: jobs, and the lanes that they are done in.
+//!
+//! A job is done in steps. Natively a lane has a thread that does them; on a web page, where there are none, each frame of the page does one. A lane
+//! holds one job of a kind at most: a newer one takes the place of one that waits, and ends one that runs after its step. So nothing piles up while
+//! somebody turns a knob.
+
+mod bench;
+mod lane;
+mod legal;
+mod paint;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use shadewright_compiler::{Catalog, Report};
+use shadewright_runtime::scene::SceneFile;
+
+pub use bench::Bench;
+pub use lane::{Job, Lane, Progress, Step};
+pub use legal::{Legal, Try, Verdict, links, reason};
+pub use paint::{Paint, Painted, Times, paint, wrong};
+
+/// A scene at one moment, with the library that it is linked from.
+#[derive(Clone)]
+pub struct Shot {
+    /// The scene.
+    pub scene: SceneFile,
+    /// The library.
+    pub catalog: Arc<Catalog>,
+    /// Grows with every change of either.
+    pub version: u64,
+}
+
+/// What jobs tell.
+#[derive(Debug)]
+pub enum News {
+    /// The picture of the viewport.
+    Painted(Box<Painted>),
+    /// A job could not be done, because the scene or a module is wrong.
+    Wrong {
+        /// Of which shot.
+        version: u64,
+        /// What is wrong.
+        report: Report,
+    },
+    /// A job could not be done, for another reason: the GPU's.
+    Failed {
+        /// What was being done.
+        what: &'static str,
+        /// Why.
+        message: String,
+    },
+    /// Which choices are legal in a place.
+    Legal(Legal),
+}
