@@ -16,6 +16,8 @@ use std::sync::Arc;
 use shadewright_compiler::{Catalog, Report};
 use shadewright_runtime::scene::SceneFile;
 
+use crate::files::Found;
+
 pub use bench::Bench;
 pub use lane::{Job, Lane, Progress, Step};
 pub use legal::{Legal, Try, Verdict, links, reason};
@@ -53,4 +55,10 @@ pub enum News {
     },
     /// Which choices are legal in a place.
     Legal(Legal),
+    /// What a file holds.
+    Found(Found),
+    /// A library that was read, or what is wrong with it.
+    Library(Result<Arc<Catalog>, Report>),
+    /// Something was done.
+    Said(String),
 }

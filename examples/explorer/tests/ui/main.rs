@@ -1,4 +1,9 @@
 //! The explorer, driven by the names of what is on its screen.
 
+mod camera;
 mod choices;
+mod files;
 mod harness;
+mod keyboard;
+mod modules;
+mod parameters;
