@@ -5,13 +5,13 @@
 
 use std::collections::HashMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 use rayon::prelude::*;
 use shadewright_compiler::Validated;
 use shadewright_compiler::catalog::Catalog;
 use shadewright_compiler::manifest::Node;
 use shadewright_compiler::program::Program;
+use web_time::Instant;
 
 use super::Frame;
 use super::draw::Drawing;

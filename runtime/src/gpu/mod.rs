@@ -1,12 +1,17 @@
 //! The GPU: its device, linked programs as pipelines, typed values as bytes, and the times of passes.
 
+#[cfg(not(target_arch = "wasm32"))]
 pub mod cache;
 mod device;
 mod error;
+mod form;
+#[cfg(not(target_arch = "wasm32"))]
+mod headless;
 mod kept;
 pub mod layout;
 pub mod pack;
 pub mod pipeline;
+mod reading;
 pub mod resources;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -16,5 +21,7 @@ pub(crate) mod value;
 pub use device::Gpu;
 pub(crate) use device::lock;
 pub use error::{DataError, GpuError, RuntimeError};
+pub use form::Form;
 pub use kept::Counts;
+pub use reading::Reading;
 pub(crate) use timer::Timer;
