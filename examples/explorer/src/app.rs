@@ -263,7 +263,7 @@ impl eframe::App for App {
 impl App {
     /// Opens one of the scenes that come with the explorer.
     pub fn open_example(&mut self, example: &crate::scenes::Example) {
-        match SceneFile::parse(example.name, example.text, std::path::Path::new("examples/scenes")) {
+        match example.scene() {
             Ok(scene) => self.open(scene),
             Err(report) => self.message = crate::work::reason(&report),
         }

@@ -40,16 +40,18 @@ fn main() -> ExitCode {
 fn start(options: &Options) -> Result<Start, String> {
     let state_file = if options.fresh { None } else { state_file() };
     let mut kept = state_file.as_deref().map(Kept::read).unwrap_or_default();
-    let example = |example: &scenes::Example| {
-        SceneFile::parse(example.name, example.text, std::path::Path::new("examples/scenes")).map_err(|report| report.render())
-    };
+    let example = |example: &scenes::Example| example.scene().map_err(|report| report.render());
     let document = match &options.scene {
         Some(asked) => match scenes::find(&asked.to_string_lossy()) {
             Some(found) => Document::new(example(found)?),
             None => {
                 let path = std::path::absolute(asked).map_err(|error| error.to_string())?;
                 kept.remember(&path);
-                Document::new(SceneFile::read(&path).map_err(|report| report.render())?)
+                Document::new(
+                    SceneFile::read(&path)
+                        .map_err(|report| report.render())?
+                        .with_files(scenes::files()),
+                )
             }
         },
         None => match last(&mut kept, state_file.as_deref()) {
@@ -85,7 +87,7 @@ fn last(kept: &mut Kept, state_file: Option<&Path>) -> Option<Document> {
         }
         return None;
     }
-    let restored = Document::restored(state, Arc::clone(&kept.saved));
+    let restored = Document::restored(state, Arc::clone(&kept.saved), &scenes::files());
     restored.map_err(|report| log::warn!("{}", report.render())).ok()
 }
 

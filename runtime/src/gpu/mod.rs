@@ -12,6 +12,7 @@ pub mod layout;
 pub mod pack;
 pub mod pipeline;
 mod reading;
+mod recent;
 pub mod resources;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -24,4 +25,5 @@ pub use error::{DataError, GpuError, RuntimeError};
 pub use form::Form;
 pub use kept::Counts;
 pub use reading::Reading;
+pub(crate) use recent::Recent;
 pub(crate) use timer::Timer;

@@ -117,6 +117,20 @@ impl Pipelines {
         }
     }
 
+    /// A frame begins: what it asks for is not forgotten at its end.
+    pub(crate) fn begin(&self) {
+        self.shaders.begin();
+        self.render.begin();
+        self.compute.begin();
+    }
+
+    /// Forgets what was asked for longest ago, until so many of each kind are left or only those of the present frame.
+    pub(crate) fn trim(&self, most: usize) {
+        self.shaders.trim(most);
+        self.render.trim(most);
+        self.compute.trim(most);
+    }
+
     /// Takes this module wherever the program's own would be taken, however it was made. It must have the program's entry points, and what
     /// it reads must be bound where the program binds it. Pipelines that were made before stay.
     ///

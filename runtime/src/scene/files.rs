@@ -36,11 +36,20 @@ pub struct Files {
     kept: Arc<Mutex<Kept>>,
 }
 
-#[derive(Clone, Default)]
-enum Source {
-    #[default]
-    Disk,
-    Memory(Arc<IndexMap<String, Arc<[u8]>>>),
+#[derive(Clone)]
+struct Source {
+    memory: Arc<IndexMap<String, Arc<[u8]>>>,
+    /// Asked for what is not in memory.
+    disk: bool,
+}
+
+impl Default for Source {
+    fn default() -> Self {
+        Self {
+            memory: Arc::default(),
+            disk: true,
+        }
+    }
 }
 
 /// What was made, for how long it holds.
@@ -72,11 +81,12 @@ type Origins = Option<Vec<(PathBuf, Stamp)>>;
 
 impl fmt::Debug for Files {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let from: &dyn fmt::Debug = match &self.source {
-            Source::Disk => &"disk",
-            Source::Memory(files) => &files.keys().collect::<Vec<_>>(),
-        };
-        f.debug_struct("Files").field("from", from).finish_non_exhaustive()
+        let names: Vec<_> = self.source.memory.keys().collect();
+        let mut shown = f.debug_struct("Files");
+        shown
+            .field("memory", &names)
+            .field("disk", &self.source.disk)
+            .finish_non_exhaustive()
     }
 }
 
@@ -85,9 +95,19 @@ impl Files {
     /// names is put behind the scene's folder: a scene of the folder `scenes` that names `../brick.png` has `brick.png`.
     pub fn memory(files: IndexMap<String, Arc<[u8]>>) -> Self {
         Self {
-            source: Source::Memory(Arc::new(files)),
+            source: Source {
+                memory: Arc::new(files),
+                disk: false,
+            },
             kept: Arc::default(),
         }
+    }
+
+    /// These files, and for all others the disk.
+    #[must_use]
+    pub fn or_disk(mut self) -> Self {
+        self.source.disk = true;
+        self
     }
 
     /// A frame begins: forgets what the latest frames have not asked for.
@@ -200,25 +220,22 @@ impl Files {
 
     /// The bytes of a file, which is noted among the origins of what is made from it.
     fn read(&self, path: &Path, most: u64, origins: &mut Origins) -> Result<Vec<u8>, String> {
-        match &self.source {
-            Source::Disk => {
-                // Before it is read: a change that comes between is seen the next time.
-                let lasting = self.stamp(path).filter(Stamp::is_settled);
-                match (lasting, &mut *origins) {
-                    (Some(stamp), Some(origins)) => origins.push((path.to_owned(), stamp)),
-                    _ => *origins = None,
-                }
-                read_bytes(path, most)
+        if let Some(bytes) = name_of(path).and_then(|name| self.source.memory.get(&name)) {
+            if bytes.len() as u64 > most {
+                return Err(format!("longer than the {most} bytes that a file may have"));
             }
-            Source::Memory(files) => {
-                let name = name_of(path);
-                let bytes = name.and_then(|name| files.get(&name)).ok_or("there is no such file")?;
-                if bytes.len() as u64 > most {
-                    return Err(format!("longer than the {most} bytes that a file may have"));
-                }
-                Ok(bytes.to_vec())
-            }
+            return Ok(bytes.to_vec());
         }
+        if !self.source.disk {
+            return Err("there is no such file".to_owned());
+        }
+        // Before it is read: a change that comes between is seen the next time.
+        let lasting = self.stamp(path).filter(Stamp::is_settled);
+        match (lasting, &mut *origins) {
+            (Some(stamp), Some(origins)) => origins.push((path.to_owned(), stamp)),
+            _ => *origins = None,
+        }
+        read_bytes(path, most)
     }
 
     /// The state of a file on disk, where the system tells.

@@ -114,7 +114,7 @@ impl SceneFile {
     pub fn unset(&self, path: &str) -> Result<Self, Report> {
         let file = &self.parsed.file;
         let text = path::unset(&file.name, &file.text, path)?;
-        Self::parse(&file.name, &text, &self.folder)
+        Ok(Self::parse(&file.name, &text, &self.folder)?.with_files(self.files.clone()))
     }
 
     /// The scene with one value changed: `lights[0].fields.intensity`, `objects[pot].translate`, `post[0].fill.exposure.params.ev100`.

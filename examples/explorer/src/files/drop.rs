@@ -10,10 +10,10 @@ use shadewright_runtime::data::{self, FORMATS, PLAIN};
 use shadewright_runtime::mesh::gltf;
 use shadewright_runtime::scene::SceneFile;
 
-use crate::App;
 use crate::document::{quoted, ron_of, step_path};
 use crate::tree::{Row, name_in};
 use crate::work::{Bench, Job, News, Step};
+use crate::{App, scenes};
 
 /// Looks at a file.
 pub struct Look {
@@ -70,7 +70,9 @@ fn look(path: &Path) -> Result<Found, String> {
         return Ok(Found::Folder(path));
     }
     if name.ends_with(".ron") {
-        let scene = SceneFile::read(&path).map_err(|report| report.render())?;
+        let scene = SceneFile::read(&path)
+            .map_err(|report| report.render())?
+            .with_files(scenes::files());
         return Ok(Found::Scene {
             scene: Box::new(scene),
             path: Some(path),
@@ -203,5 +205,8 @@ fn around(path: &Path) -> Result<SceneFile, String> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     text += &format!("    gltf: [(file: {})],\n)\n", quoted(&file));
-    SceneFile::parse(&format!("{}.scene.ron", path.display()), &text, &folder).map_err(|report| crate::work::reason(&report))
+    let scene = SceneFile::parse(&format!("{}.scene.ron", path.display()), &text, &folder);
+    scene
+        .map(|scene| scene.with_files(scenes::files()))
+        .map_err(|report| crate::work::reason(&report))
 }

@@ -9,7 +9,7 @@ use explorer::document::Document;
 use explorer::files::Kept;
 use explorer::{App, Start};
 use shadewright_runtime::image::{decode_exr, decode_texture};
-use shadewright_runtime::scene::SceneFile;
+use shadewright_runtime::scene::{Files, SceneFile};
 
 use crate::harness::{SMALL, click, fill, open_small, said, select, settle, small, start};
 
@@ -144,7 +144,7 @@ fn state_survives_a_crash() {
     std::mem::forget(explorer);
     let kept = Kept::read(&file);
     assert!(!kept.starting);
-    let document = Document::restored(kept.state.unwrap(), kept.saved).unwrap();
+    let document = Document::restored(kept.state.unwrap(), kept.saved, &Files::default()).unwrap();
     assert!(document.is_changed());
     let explorer = begin(document);
     assert_eq!(

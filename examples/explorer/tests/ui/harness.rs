@@ -19,8 +19,7 @@ pub fn open(example: &str) -> Harness<'static, App> {
 
 /// The same in a window of another size, points, at so many pixels a point.
 pub fn open_sized(example: &str, size: [f32; 2], scale: f32) -> Harness<'static, App> {
-    let example = scenes::find(example).unwrap();
-    let scene = SceneFile::parse(example.name, example.text, Path::new("../scenes")).unwrap();
+    let scene = scenes::find(example).unwrap().scene().unwrap();
     start(Start::with(scene), size, scale)
 }
 
@@ -43,7 +42,7 @@ pub const SMALL: &str = r#"(
 
 /// The small scene.
 pub fn small() -> SceneFile {
-    SceneFile::parse("small", SMALL, Path::new("")).unwrap()
+    SceneFile::parse("small", SMALL, Path::new("")).unwrap().with_files(scenes::files())
 }
 
 /// The explorer with the small scene.
