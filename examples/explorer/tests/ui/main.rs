@@ -7,3 +7,4 @@ mod harness;
 mod keyboard;
 mod modules;
 mod parameters;
+mod walk;
