@@ -115,7 +115,10 @@ fn a_window_is_driven_and_killed() {
     until("another picture", || display.screenshot() != before.1);
     let (turned, shown) = (camera(), Kept::read(&file));
     // No window manager gives a window the keyboard.
-    display.run("xdotool", &["search", "--name", "Shadewright", "windowfocus", "sleep", "0.3", "key", "ctrl+z"]);
+    display.run(
+        "xdotool",
+        &["search", "--name", "Shadewright", "windowfocus", "sleep", "0.3", "key", "ctrl+z"],
+    );
     until("an undone turn", || camera() == before.0);
     display.run("xdotool", &["key", "ctrl+y"]);
     until("a turn done again", || camera() == turned);
