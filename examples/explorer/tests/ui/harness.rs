@@ -85,15 +85,20 @@ pub fn settle(harness: &mut Harness<App>) {
 
 /// Clicks what has this name.
 pub fn click(harness: &mut Harness<App>, name: &str) {
-    let found: Vec<_> = harness
-        .query_all_by_label(name)
-        .filter(|node| CLICKABLE.contains(&node.accesskit_node().role()))
-        .collect();
-    let [node] = found.as_slice() else {
-        panic!("there are {} {name:?}, and {:#?}", found.len(), names(harness));
-    };
-    node.click();
+    button(harness, name).scroll_to_me();
+    harness.run_steps(4);
+    button(harness, name).click();
     harness.run_steps(3);
+}
+
+/// What has this name and can be clicked.
+fn button<'h>(harness: &'h Harness<App>, name: &'h str) -> Node<'h> {
+    let clickable = |node: &Node| CLICKABLE.contains(&node.accesskit_node().role());
+    let mut found: Vec<_> = harness.query_all_by_label(name).filter(clickable).collect();
+    match found.pop() {
+        Some(node) if found.is_empty() => node,
+        _ => panic!("not one {name:?} among {:#?}", names(harness)),
+    }
 }
 
 /// Mean of the picture's pixels, 0 to 1 for red, green and blue.

@@ -5,6 +5,8 @@ mod choices;
 mod files;
 mod harness;
 mod keyboard;
+mod lists;
+mod looks;
 mod modules;
 mod parameters;
 mod walk;
