@@ -16,6 +16,7 @@
 mod app;
 pub mod document;
 pub mod panels;
+pub mod save;
 pub mod scenes;
 mod setup;
 pub mod tree;

@@ -53,13 +53,16 @@ pub fn start(start: Start, size: [f32; 2], scale: f32) -> Harness<'static, App> 
 pub fn settle(harness: &mut Harness<App>) {
     let start = Instant::now();
     harness.run_steps(2);
+    let mut was_idle = false;
     loop {
         let app = harness.state();
         let is_idle = app.lanes.view.is_idle() && app.lanes.desk.is_idle() && app.lanes.long.is_idle();
         harness.run_steps(2);
-        if is_idle {
+        // What was told last may have been answered by asking for more.
+        if is_idle && was_idle {
             return;
         }
+        was_idle = is_idle;
         assert!(start.elapsed() < PATIENCE, "it does not settle");
         std::thread::sleep(Duration::from_millis(5));
     }
