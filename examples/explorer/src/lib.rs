@@ -8,6 +8,7 @@
 //! - [`document`]: the scene's text, changed by edits that can be undone. The text is all there is: what is saved, sent and kept over a crash.
 //! - [`tree`]: the modules that stand in the scene, and what else could stand in their places.
 //! - [`work`]: whatever takes longer than a frame of the window, done beside it.
+//! - [`files`]: scenes, pictures, modules and what is kept between two starts.
 //! - [`panels`]: what is on the screen.
 //! - [`App`]: all of it together.
 
@@ -15,12 +16,12 @@
 
 mod app;
 pub mod document;
+pub mod files;
 pub mod panels;
-pub mod save;
 pub mod scenes;
 mod setup;
 pub mod tree;
 pub mod work;
 
-pub use app::{App, Lanes, Problem, Start};
+pub use app::{App, Lanes, Problem, Start, subject};
 pub use setup::setup;

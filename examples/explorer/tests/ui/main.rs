@@ -1,5 +1,11 @@
 //! The explorer, driven by the names of what is on its screen.
 
+mod camera;
 mod choices;
+mod files;
 mod harness;
+mod keyboard;
+mod modules;
+mod parameters;
 mod tabs;
+mod walk;

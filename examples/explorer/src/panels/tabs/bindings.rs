@@ -79,6 +79,7 @@ fn table(app: &mut App, ui: &mut egui::Ui, made: &Made, heads: &[(&str, f32)], l
         .id_salt(app.tabs.bindings.table.name())
         .striped(true)
         .resizable(true)
+        .min_scrolled_height(0.0)
         .auto_shrink(false);
     for (_, width) in heads {
         builder = builder.column(Column::initial(*width).clip(true).at_least(24.0));

@@ -11,6 +11,8 @@ use eframe::egui;
 
 use crate::App;
 
+pub(crate) use code::save as save_code;
+
 pub use code::CodeState;
 pub use graph::GraphState;
 pub use inspect::InspectState;

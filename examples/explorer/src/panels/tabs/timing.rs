@@ -14,7 +14,7 @@ pub use history::TimingState;
 /// How often the present picture is drawn to measure it.
 const TIMES: usize = 16;
 /// Width of the table, points.
-const TABLE: f32 = 430.0;
+const TABLE: f32 = 490.0;
 
 /// Shows them.
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
@@ -46,7 +46,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
         ui.weak("No picture yet.");
         return;
     }
-    let width = TABLE.min(0.5 * ui.available_width());
+    let width = TABLE.min(0.56 * ui.available_width());
     egui::Panel::left("times")
         .resizable(true)
         .default_size(width)
@@ -69,9 +69,9 @@ fn table(ui: &mut egui::Ui, history: &History, has_passes: bool) {
                     continue;
                 };
                 let cell = |ui: &mut egui::Ui, text: String| ui.label(RichText::new(text).monospace());
-                cell(ui, format!("{:>9.3}", spread.last));
-                cell(ui, format!("{:>9.3}", spread.median));
-                cell(ui, format!("{:.3} to {:.3}", spread.quarter, spread.three_quarters));
+                cell(ui, format!("{:>8.2}", spread.last));
+                cell(ui, format!("{:>8.2}", spread.median));
+                cell(ui, format!("{:.2} to {:.2}", spread.quarter, spread.three_quarters));
                 ui.end_row();
             }
         });

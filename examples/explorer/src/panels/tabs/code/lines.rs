@@ -8,7 +8,7 @@ use super::lexer::{Token, pieces};
 use crate::work::Listing;
 
 /// Width of the column that says which module a line is from, characters.
-const FROM: usize = 22;
+const FROM: usize = 26;
 
 /// Shows them; the line that was clicked.
 pub(super) fn show(ui: &mut egui::Ui, state: &mut CodeState, listing: &Listing) -> Option<usize> {
@@ -27,6 +27,7 @@ pub(super) fn show(ui: &mut egui::Ui, state: &mut CodeState, listing: &Listing) 
     let mut clicked = None;
     area.show_rows(ui, height, listing.lines.len(), |ui, seen| {
         let width = (margin + (listing.width + 2) as f32 * letter).max(ui.available_width());
+        let top = seen.start;
         for index in seen {
             let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::click());
             let text = listing.line(index);
@@ -47,7 +48,7 @@ pub(super) fn show(ui: &mut egui::Ui, state: &mut CodeState, listing: &Listing) 
             let at = |columns: usize| rect.min + vec2(columns as f32 * letter, 0.0);
             painter.text(at(0), egui::Align2::LEFT_TOP, number, font.clone(), weak);
             if let Some(Some(origin)) = listing.origins.get(index) {
-                let is_first = index == 0 || listing.origins[index - 1].as_ref().is_none_or(|before| before.item != origin.item);
+                let is_first = index == top || listing.origins[index - 1].as_ref().is_none_or(|before| before.item != origin.item);
                 let module = if is_first { origin.item.module.as_str() } else { "" };
                 let line = if origin.line > 0 { origin.line.to_string() } else { String::new() };
                 let room = FROM - 5;

@@ -11,6 +11,7 @@ use eframe::egui::{self, Button, Key, KeyboardShortcut, Modifiers, TextEdit, Wid
 
 use super::inspect;
 use crate::App;
+use crate::files::Purpose;
 use crate::work::{Inspected, Listing, Made};
 
 const FIND: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::G);
@@ -28,14 +29,10 @@ pub struct CodeState {
     pub current: usize,
     /// The line that is asked about.
     pub line: Option<usize>,
-    /// The file that it is saved to.
-    pub file: String,
     /// Is scrolled to with the next frame.
     pub scroll_to: Option<usize>,
     /// What was searched, and for what.
     searched: Option<(Arc<Inspected>, String)>,
-    /// For what the file was named.
-    named: String,
 }
 
 impl CodeState {
@@ -157,27 +154,31 @@ fn keep(app: &mut App, ui: &mut egui::Ui, made: &Made, listing: &Listing) {
         ui.ctx().copy_text(listing.text.clone());
         app.message = format!("copied {} lines", listing.lines.len());
     }
-    let state = &mut app.tabs.code;
-    let entry = if made.view.language.takes_entry() {
-        format!(".{}", made.view.entry)
-    } else {
-        String::new()
-    };
-    let name = format!("{}.{}{entry}.{}", made.subject().name, made.view.pass, made.view.language.ending());
-    if state.named != name {
-        state.file.clone_from(&name);
-        state.named = name;
-    }
-    let field = ui.add(TextEdit::singleline(&mut state.file).desired_width(150.0));
-    field.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, true, "File for the code"));
-    field.on_hover_text("Where it is saved");
-    let save = ui.add_enabled(!state.file.is_empty(), Button::new("Save"));
+    let save = ui.button("Save...");
     save.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, "Save the code"));
     if save.clicked() {
-        let bytes = listing.bytes.as_deref().unwrap_or(listing.text.as_bytes());
-        app.message = match crate::save::save(&app.tabs.code.file, bytes) {
-            Ok(()) => format!("saved {}", app.tabs.code.file),
-            Err(error) => format!("{} is not saved: {error}", app.tabs.code.file),
+        let view = &made.view;
+        let entry = if view.language.takes_entry() {
+            format!(".{}", view.entry)
+        } else {
+            String::new()
         };
+        let name = format!("{}.{}{entry}.{}", made.subject().name, view.pass, view.language.ending());
+        app.ask_path_named(Purpose::Code, &name);
     }
+}
+
+/// Writes the code that is shown to a file.
+pub(crate) fn save(app: &mut App, path: &str) {
+    let shown = app.tabs.inspect.shown.clone();
+    let made = shown.as_ref().and_then(|inspected| inspected.made.as_ref().ok());
+    let Some(Ok(listing)) = made.map(|made| &made.listing) else {
+        "there is no code".clone_into(&mut app.message);
+        return;
+    };
+    let bytes = listing.bytes.as_deref().unwrap_or(listing.text.as_bytes());
+    app.message = match crate::files::save(path, bytes) {
+        Ok(place) => format!("saved {place}"),
+        Err(why) => format!("the code is not saved: {why}"),
+    };
 }
