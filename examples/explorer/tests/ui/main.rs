@@ -9,4 +9,5 @@ mod lists;
 mod looks;
 mod modules;
 mod parameters;
+mod tabs;
 mod walk;
