@@ -1,5 +1,6 @@
 //! The application: a document, the lanes that work for it, and what is on the screen.
 
+mod compare;
 mod news;
 
 use std::sync::Arc;
@@ -10,6 +11,7 @@ use shadewright_compiler::{Catalog, Library, Report};
 use shadewright_runtime::gpu::Gpu;
 use shadewright_runtime::scene::SceneFile;
 
+use crate::compare::Compare;
 use crate::document::{Document, Draft};
 use crate::panels::{self, Tabs, TreeState, Viewport};
 use crate::tree::{Row, rows};
@@ -70,6 +72,8 @@ pub struct App {
     pub tree: TreeState,
     /// What the tabs remember.
     pub tabs: Tabs,
+    /// What is compared with what.
+    pub compare: Compare,
     /// Document's version and the library, as of [`App::version`].
     seen: Option<(u64, Arc<Catalog>)>,
 }
@@ -104,6 +108,7 @@ impl App {
             viewport: Viewport::default(),
             tree: TreeState::default(),
             tabs: Tabs::default(),
+            compare: Compare::default(),
             seen: None,
         })
     }
@@ -147,6 +152,7 @@ impl App {
         self.document = Document::new(scene);
         self.seen = None;
         self.viewport.forget();
+        self.compare.forget(&self.render_state);
     }
 
     /// Links from another library, or the same one after an edit.

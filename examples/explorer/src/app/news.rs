@@ -36,6 +36,7 @@ impl App {
                     self.tree.legal = Some(legal);
                 }
             }
+            News::Compare(told) => self.take_comparison(told),
         }
     }
 
@@ -45,5 +46,6 @@ impl App {
             let shot = self.shot();
             self.lanes.view.ask(Paint { shot, size });
         }
+        self.ask_to_compare();
     }
 }

@@ -5,11 +5,16 @@
 //! somebody turns a knob.
 
 mod bench;
+mod beside;
 mod lane;
 mod legal;
 mod paint;
+mod reference;
+mod sheet;
+mod sweep;
 #[cfg(test)]
 mod tests;
+mod thumbnail;
 
 use std::sync::Arc;
 
@@ -17,9 +22,14 @@ use shadewright_compiler::{Catalog, Report};
 use shadewright_runtime::scene::SceneFile;
 
 pub use bench::Bench;
+pub use beside::{DrawBeside, LoadTruths, PaintHeat, values};
 pub use lane::{Job, Lane, Progress, Step};
 pub use legal::{Legal, Try, Verdict, links, reason};
 pub use paint::{Paint, Painted, Times, paint, wrong};
+pub use reference::Refine;
+pub use sheet::WriteSheet;
+pub use sweep::{Alternative, Change, MOST, Measured, Sweep};
+pub use thumbnail::{DrawThumbnail, picture};
 
 /// A scene at one moment, with the library that it is linked from.
 #[derive(Clone)]
@@ -53,4 +63,6 @@ pub enum News {
     },
     /// Which choices are legal in a place.
     Legal(Legal),
+    /// Of comparing.
+    Compare(crate::compare::Told),
 }

@@ -1,6 +1,10 @@
 //! The tabs below the picture.
 
+mod pareto;
+mod pins;
 mod problems;
+mod reference;
+mod sheet;
 
 use eframe::egui;
 
@@ -12,16 +16,28 @@ pub enum Tab {
     /// What is wrong, with the line of the source.
     #[default]
     Problems,
+    /// Permutations that are kept.
+    Pins,
+    /// The scene's truth, and what stands in it for what.
+    Reference,
+    /// Error against cost of what could stand in a slot.
+    Pareto,
+    /// Pictures of what could stand in a slot.
+    Sheet,
 }
 
 impl Tab {
     /// All of them, in their order.
-    pub const ALL: [Self; 1] = [Self::Problems];
+    pub const ALL: [Self; 5] = [Self::Problems, Self::Pins, Self::Reference, Self::Pareto, Self::Sheet];
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Problems => "Problems",
+            Self::Pins => "Pins",
+            Self::Reference => "Reference",
+            Self::Pareto => "Pareto",
+            Self::Sheet => "Sheet",
         }
     }
 }
@@ -31,6 +47,8 @@ impl Tab {
 pub struct Tabs {
     /// Which one is shown.
     pub shown: Tab,
+    /// What the plot of alternatives has across.
+    pub cost: pareto::Cost,
 }
 
 /// Shows the tabs.
@@ -43,5 +61,9 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     ui.separator();
     match app.tabs.shown {
         Tab::Problems => problems::show(app, ui),
+        Tab::Pins => pins::show(app, ui),
+        Tab::Reference => reference::show(app, ui),
+        Tab::Pareto => pareto::show(app, ui),
+        Tab::Sheet => sheet::show(app, ui),
     }
 }
