@@ -8,8 +8,10 @@ use crate::document::State;
 use crate::panels::Tab;
 use crate::work::{DrawBeside, DrawThumbnail, LoadTruths, PaintHeat, Refine, Sweep};
 
-/// Width of the small pictures, pixels.
+/// Width of an alternative's picture, pixels.
 const SMALL: u32 = 160;
+/// Width and height of a pin's picture, pixels.
+const THUMBNAIL: [u32; 2] = [160, 100];
 
 impl App {
     /// Keeps the present permutation.
@@ -36,7 +38,7 @@ impl App {
         self.compare.is_refining |= other == Other::Reference;
     }
 
-    /// Width and height of the small pictures: as wide as they are high as the viewport's.
+    /// Width and height of an alternative's picture: of the viewport's shape.
     fn small(&self) -> [u32; 2] {
         let size = self.viewport.painted.as_ref().map_or([4, 3], |painted| painted.frame.size);
         let height = f64::from(SMALL) * f64::from(size[1]) / f64::from(size[0].max(1));
@@ -74,7 +76,7 @@ impl App {
             pin: id,
             state,
             catalog: Arc::clone(&self.catalog),
-            size: self.small(),
+            size: THUMBNAIL,
         });
         self.compare.pins.pictures.insert(id, Thumbnail::Asked);
     }

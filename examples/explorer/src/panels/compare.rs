@@ -15,7 +15,10 @@ const HANDLE: f32 = 10.0;
 
 /// The bar above the picture.
 pub(super) fn bar(app: &mut App, ui: &mut egui::Ui) {
+    ui.spacing_mut().item_spacing.y = 0.0;
     egui::Frame::new().inner_margin(4.0).fill(ui.visuals().panel_fill).show(ui, |ui| {
+        ui.take_available_width();
+        ui.spacing_mut().item_spacing.y = 3.0;
         ui.horizontal_wrapped(|ui| {
             for mode in Mode::ALL {
                 let button = ui.selectable_label(app.compare.mode == mode, mode.name());

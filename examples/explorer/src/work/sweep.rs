@@ -80,8 +80,8 @@ pub struct Sweep {
     size: [u32; 2],
     truths: Arc<Truths>,
     candidates: Vec<(String, Change)>,
-    /// What errors are against, and the time of the present choice, ns.
-    base: Option<(Values, Option<f64>)>,
+    /// What errors are against, and the present scene.
+    base: Option<(Values, Frame)>,
     done: usize,
     cut: u128,
 }
@@ -170,8 +170,7 @@ impl Sweep {
         let targets = bench.renderer(&self.shot.catalog).render(&frame)?;
         let truth = values(bench.gpu(), &targets)?;
         let frame = self.shot.scene.frame(&self.shot.catalog, Some(self.size))?;
-        let time = time(bench.renderer(&self.shot.catalog), &frame)?;
-        self.base = Some((truth, time));
+        self.base = Some((truth, frame));
         Ok(SweepView {
             version: self.shot.version,
             path: self.row.path.clone(),
@@ -184,45 +183,57 @@ impl Sweep {
         })
     }
 
-    fn measure(&self, bench: &mut Bench, change: &Change, truth: &Values, present: Option<f64>) -> Result<Measured, RuntimeError> {
+    fn measure(&self, bench: &mut Bench, change: &Change, truth: &Values, present: &Frame) -> Result<Measured, RuntimeError> {
         let frame = self.with(change)?.frame(&self.shot.catalog, Some(self.size))?;
         let gpu = bench.gpu().clone();
         let renderer = bench.renderer(&self.shot.catalog);
         let targets = renderer.render(&frame)?;
         let found = values(&gpu, &targets)?;
         let pixels = targets.read_display(&gpu)?.unwrap_or_default();
-        let time = time(renderer, &frame)?;
+        let ratio = ratio(renderer, &frame, present)?;
         let errors = Errors::of(&found, truth).unwrap_or_default();
         Ok(Measured {
             pixels,
             summary: errors.summary,
             rms: errors.rms,
-            ratio: time.zip(present).map(|(time, present)| time / present.max(1.0)),
+            ratio,
             operations: operations(renderer, &frame)?,
         })
     }
 }
 
-/// Time of a frame's scene pass on the GPU, ns: the middle of several, after one that warms up. None where the device has no timestamps.
-fn time(renderer: &mut Renderer, frame: &Frame) -> Result<Option<f64>, RuntimeError> {
-    let mut times = Vec::new();
+/// Time of a frame's scene pass on the GPU over another's: medians of several in turn, so that a busy moment is both's, after one of each that warms up.
+/// None where the device has no timestamps.
+fn ratio(renderer: &mut Renderer, frame: &Frame, present: &Frame) -> Result<Option<f64>, RuntimeError> {
+    let mut times = [Vec::new(), Vec::new()];
     for _ in 0..=TIMED {
-        // Of frames before, too.
-        while renderer.take_times().is_some() {}
-        renderer.render(frame)?;
-        let Some(taken) = (if cfg!(target_arch = "wasm32") {
-            renderer.take_times()
-        } else {
-            renderer.wait_for_times()?
-        }) else {
-            return Ok(None);
-        };
-        let scene = taken.passes.iter().filter(|pass| pass.name.starts_with("scene"));
-        times.push(scene.map(|pass| pass.nanoseconds).sum::<f64>());
+        for (frame, times) in [frame, present].into_iter().zip(&mut times) {
+            let Some(time) = time(renderer, frame)? else { return Ok(None) };
+            times.push(time);
+        }
     }
-    times.remove(0);
-    times.sort_by(f64::total_cmp);
-    Ok(times.get(TIMED / 2).copied())
+    let [time, present] = times.map(|mut times| {
+        times.remove(0);
+        times.sort_by(f64::total_cmp);
+        times[TIMED / 2]
+    });
+    Ok((present > 0.0).then(|| time / present))
+}
+
+/// Time of a frame's scene pass on the GPU, ns.
+fn time(renderer: &mut Renderer, frame: &Frame) -> Result<Option<f64>, RuntimeError> {
+    // Of frames before.
+    while renderer.take_times().is_some() {}
+    renderer.render(frame)?;
+    let taken = if cfg!(target_arch = "wasm32") {
+        renderer.take_times()
+    } else {
+        renderer.wait_for_times()?
+    };
+    Ok(taken.map(|taken| {
+        let scene = taken.passes.iter().filter(|pass| pass.name.starts_with("scene"));
+        scene.map(|pass| pass.nanoseconds).sum()
+    }))
 }
 
 /// Weighted operations that a pixel takes of each program that draws objects, together.
@@ -262,7 +273,7 @@ impl Job for Sweep {
         let Some((name, change)) = self.candidates.get(self.done) else {
             return Step::Break(());
         };
-        let outcome = self.measure(bench, change, &truth, present).map_err(|error| match error {
+        let outcome = self.measure(bench, change, &truth, &present).map_err(|error| match error {
             RuntimeError::Compile(report) => reason(&report),
             error => error.to_string(),
         });

@@ -199,7 +199,7 @@ fn the_truth_is_drawn_in_the_background() {
     click(&mut explorer, "Reference");
     click(&mut explorer, "Draw the reference in the background");
     until_early(&mut explorer, "coarse", |app| app.compare.refined.is_some());
-    assert!(explorer.query_by_label_contains("split → reference").is_some() || explorer.state().compare.made.is_some());
+    assert_eq!(explorer.get_all_by_label("reference instead of split").count(), 5);
     assert!(
         explorer
             .state()

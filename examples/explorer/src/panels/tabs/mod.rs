@@ -66,4 +66,6 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
         Tab::Pareto => pareto::show(app, ui),
         Tab::Sheet => sheet::show(app, ui),
     }
+    // The panel keeps its height, however little there is to show.
+    ui.take_available_space();
 }

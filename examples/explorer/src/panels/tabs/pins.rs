@@ -6,7 +6,7 @@ use crate::App;
 use crate::compare::{Other, Pin, Thumbnail};
 
 /// Width of a pin's place, points.
-const WIDTH: f32 = 150.0;
+const WIDTH: f32 = 144.0;
 
 /// What is asked of a pin.
 enum Asked {
@@ -29,7 +29,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
             for pin in &pins {
                 ui.push_id(pin.id, |ui| {
                     ui.vertical(|ui| {
-                        ui.set_width(WIDTH);
+                        ui.set_width(WIDTH + 8.0);
                         asked = card(app, ui, pin).map(|what| (pin.id, what)).or(asked.take());
                     });
                 });
@@ -56,7 +56,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
 fn card(app: &mut App, ui: &mut egui::Ui, pin: &Pin) -> Option<Asked> {
     let mut asked = None;
     let is_here = pin.state.text == app.document.state().text;
-    let size = vec2(WIDTH, WIDTH * 0.62);
+    let size = vec2(WIDTH, WIDTH / 1.6);
     let image = picture(app, ui, pin.id).map(|id| egui::Image::new((id, size)).fit_to_exact_size(size));
     let button = match image {
         Some(image) => Button::image(image),

@@ -37,7 +37,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
         egui::Grid::new("replaced").striped(true).num_columns(4).show(ui, |ui| {
             for entry in replaced {
                 ui.monospace(&entry.path);
-                ui.label(format!("{} → {}", entry.from, entry.to));
+                ui.label(format!("{} instead of {}", entry.to, entry.from));
                 ui.weak(format!("true by {}", entry.experiment));
                 ui.end_row();
             }
