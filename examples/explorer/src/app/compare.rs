@@ -8,8 +8,8 @@ use crate::document::State;
 use crate::panels::Tab;
 use crate::work::{DrawBeside, DrawThumbnail, LoadTruths, PaintHeat, Refine, Sweep};
 
-/// Width of an alternative's picture, pixels.
-const SMALL: u32 = 160;
+/// Largest width and height of an alternative's picture, pixels.
+const SMALL: [u32; 2] = [160, 120];
 /// Width and height of a pin's picture, pixels.
 const THUMBNAIL: [u32; 2] = [160, 100];
 
@@ -41,8 +41,9 @@ impl App {
     /// Width and height of an alternative's picture: of the viewport's shape.
     fn small(&self) -> [u32; 2] {
         let size = self.viewport.painted.as_ref().map_or([4, 3], |painted| painted.frame.size);
-        let height = f64::from(SMALL) * f64::from(size[1]) / f64::from(size[0].max(1));
-        [SMALL, (height as u32).clamp(SMALL / 4, SMALL * 3 / 2)]
+        let [width, height] = size.map(|side| f64::from(side.max(1)));
+        let shrink = (f64::from(SMALL[0]) / width).min(f64::from(SMALL[1]) / height);
+        [width, height].map(|side| ((side * shrink) as u32).max(16))
     }
 
     /// The picture that is shown: its version and size.
@@ -224,9 +225,7 @@ impl App {
             Told::Refined(refined) => {
                 if refined.version == self.version && compare.is_refining {
                     compare.problem.clear();
-                    if let Some(texture) = &refined.targets.display {
-                        compare.truth_screen.show(&self.render_state, texture);
-                    }
+                    compare.truth_screen.show(&self.render_state, &refined.display);
                     compare.refined = Some(refined);
                 }
             }

@@ -126,8 +126,8 @@ pub struct Refined {
     pub version: u64,
     /// How many of the viewport's pixels one of its is wide.
     pub divisor: u32,
-    /// On the GPU.
-    pub targets: Targets,
+    /// As it is shown, on the GPU.
+    pub display: wgpu::Texture,
     /// Its numbers.
     pub values: Values,
     /// The present scene, drawn in the same size, against it.

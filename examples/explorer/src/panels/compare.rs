@@ -3,7 +3,7 @@
 mod legend;
 mod probe;
 
-use eframe::egui::{self, Align2, Color32, ComboBox, EventFilter, FontId, Key, Rect, Sense, Slider, Stroke, TextureOptions, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, ComboBox, DragValue, EventFilter, FontId, Key, Rect, Sense, Stroke, TextureOptions, pos2, vec2};
 
 use crate::App;
 use crate::compare::{Mode, Other};
@@ -37,7 +37,6 @@ pub(super) fn bar(app: &mut App, ui: &mut egui::Ui) {
             if matches!(app.compare.mode, Mode::Difference | Mode::Error) {
                 range(app, ui);
             }
-            ui.separator();
             if ui.button("Pin").on_hover_text("Keep the present permutation").clicked() {
                 app.pin();
             }
@@ -70,10 +69,19 @@ fn other(app: &mut App, ui: &mut egui::Ui) {
 /// The error that has the full colour.
 fn range(app: &mut App, ui: &mut egui::Ui) {
     let mut percent = app.compare.full * 100.0;
-    let label = ui.label("±");
-    let slider = Slider::new(&mut percent, 0.1..=1000.0).logarithmic(true).suffix(" %");
-    let response = ui.add(slider).labelled_by(label.id);
-    response.widget_info(|| egui::WidgetInfo::slider(true, percent, "Range of the heat map"));
+    let speed = percent * 0.01;
+    let drag = DragValue::new(&mut percent)
+        .range(0.1..=1000.0)
+        .speed(speed)
+        .max_decimals(2)
+        .prefix("± ")
+        .suffix(" %");
+    let response = ui.add(drag);
+    response.widget_info(|| {
+        let mut info = egui::WidgetInfo::drag_value(true, percent);
+        info.label = Some("Range of the heat map".to_owned());
+        info
+    });
     if response.on_hover_text("The error that has the full colour").changed() {
         app.compare.full = (percent / 100.0).max(1e-3);
     }

@@ -14,7 +14,7 @@ use super::beside::{failed, values};
 use super::{Bench, Job, News, Progress, Shot, Step, links, reason};
 use crate::compare::{Errors, SweepView, Told, Truths, Values, reference};
 use crate::document::Draft;
-use crate::tree::{Row, choose, options};
+use crate::tree::{Row, choose, options, rows};
 
 /// Most alternatives that are drawn.
 pub const MOST: usize = 64;
@@ -130,11 +130,15 @@ impl Sweep {
     }
 
     fn with(&self, change: &Change) -> Result<SceneFile, Report> {
+        self.with_in(&self.row, change)
+    }
+
+    fn with_in(&self, row: &Row, change: &Change) -> Result<SceneFile, Report> {
         let mut draft = Draft {
             scene: self.shot.scene.clone(),
             parked: Vec::new(),
         };
-        change.put(&mut draft, &self.shot.catalog, &self.row)?;
+        change.put(&mut draft, &self.shot.catalog, row)?;
         links(&self.shot.catalog, &draft.scene)?;
         Ok(draft.scene)
     }
@@ -153,6 +157,9 @@ impl Sweep {
                 return (scene, format!("{} in this slot, which is called true", present.name));
             }
         }
+        if let Some(found) = self.truth_around() {
+            return found;
+        }
         let made = reference(&self.shot.scene, &self.shot.catalog, &self.truths);
         if !made.replaced.is_empty() && links(&self.shot.catalog, &made.scene).is_ok() {
             return (made.scene, "the scene's reference: nothing is called true in this slot".to_owned());
@@ -162,6 +169,23 @@ impl Sweep {
             self.shot.scene.clone(),
             format!("the present choice, {present}: nothing is called true here"),
         )
+    }
+
+    /// The scene with what is true in the nearest place around the slot for which something is called true.
+    fn truth_around(&self) -> Option<(SceneFile, String)> {
+        let rows = rows(&self.shot.scene, &self.shot.catalog, &[]);
+        let around = |row: &&Row| self.row.path.strip_prefix(&row.path).is_some_and(|rest| rest.starts_with('.'));
+        let mut around: Vec<&Row> = rows.iter().filter(|row| row.is_choice()).filter(around).collect();
+        around.sort_by_key(|row| std::cmp::Reverse(row.path.len()));
+        around.into_iter().find_map(|row| {
+            let truth = self.truths.of(row.module.as_ref()?)?;
+            let scene = self.with_in(row, &Change::Module(Arc::clone(&truth.module))).ok()?;
+            let text = format!(
+                "{} in {}, around this slot, true by {}",
+                truth.module.name, row.path, truth.experiment
+            );
+            Some((scene, text))
+        })
     }
 
     fn begin(&mut self, bench: &mut Bench) -> Result<SweepView, RuntimeError> {
@@ -273,7 +297,8 @@ impl Job for Sweep {
         let Some((name, change)) = self.candidates.get(self.done) else {
             return Step::Break(());
         };
-        let outcome = self.measure(bench, change, &truth, &present).map_err(|error| match error {
+        let outcome = self.measure(bench, change, &truth, &present);
+        let outcome = outcome.map_err(|error| match error {
             RuntimeError::Compile(report) => reason(&report),
             error => error.to_string(),
         });
@@ -284,6 +309,11 @@ impl Job for Sweep {
             ),
             Change::Recipe(_) => (false, Vec::new()),
         };
+        let outcome = outcome.map(|measured| Measured {
+            // What it is measured by.
+            ratio: measured.ratio.map(|ratio| if is_present { 1.0 } else { ratio }),
+            ..measured
+        });
         tell(News::Compare(Told::Alternative(Box::new(Alternative {
             name: name.clone(),
             change: change.clone(),
@@ -315,7 +345,6 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::tree::rows;
 
     /// Catches a sheet without a bound, and one that does not say what is beyond it.
     #[test]

@@ -67,7 +67,10 @@ pub fn errors(found: &[[f32; 4]], truth: &[[f32; 4]]) -> Vec<f64> {
     // A picture that is black everywhere has no scale of its own: errors are in its unit then.
     let scale = if mean > 0.0 { mean } else { 1.0 };
     let error = |[a, b]: &[f64; 2]| (a - b) / (b.max(0.0) + scale);
-    pairs.iter().map(|pair| if is_finite(pair) { error(pair) } else { f64::NAN }).collect()
+    pairs
+        .iter()
+        .map(|pair| if is_finite(pair) { error(pair) } else { f64::NAN })
+        .collect()
 }
 
 /// The colour of an error, sRGB-encoded RGBA: full where it is `full` or more, either way.

@@ -9,7 +9,9 @@ use crate::compare::SweepView;
 use crate::work::{WriteSheet, picture};
 
 /// Width of a picture, points.
-const WIDTH: f32 = 140.0;
+const WIDTH: f32 = 132.0;
+/// Largest height of a picture, points.
+const HEIGHT: f32 = 99.0;
 
 /// Shows them.
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
@@ -23,11 +25,12 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             for (index, alternative) in sweep.alternatives.iter().enumerate() {
-                let height = WIDTH * sweep.size[1] as f32 / sweep.size[0].max(1) as f32;
-                ui.allocate_ui(vec2(WIDTH + 8.0, height + 48.0), |ui| {
+                let sides = sweep.size.map(|side| side.max(1) as f32);
+                let shrink = (WIDTH / sides[0]).min(HEIGHT / sides[1]);
+                let size = vec2(sides[0], sides[1]) * shrink;
+                ui.allocate_ui(vec2(WIDTH + 8.0, size.y + 48.0), |ui| {
                     ui.vertical(|ui| {
                         ui.set_width(WIDTH + 8.0);
-                        let size = vec2(WIDTH, height);
                         let texture = app.compare.tiles.get(index).filter(|_| alternative.outcome.is_ok());
                         let button = match texture {
                             Some(texture) => Button::image(egui::Image::new((texture.id(), size)).fit_to_exact_size(size)),

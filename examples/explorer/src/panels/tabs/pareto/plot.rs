@@ -38,11 +38,11 @@ pub(super) fn show(ui: &mut egui::Ui, sweep: &SweepView, cost: Cost, height: f32
         Cost::Time => "time, over the present choice's",
         Cost::Operations => "operations",
     };
-    let power = |mark: GridMark| short(10f64.powf(mark.value));
     let (strong, weak) = (ui.visuals().strong_text_color(), ui.visuals().weak_text_color());
     let accent = ui.visuals().hyperlink_color;
     // Names stand beside their points: there is room for them.
     let (low, high) = range(dots.iter().map(|dot| dot.place[0]));
+    let (bottom, top) = range(dots.iter().map(|dot| dot.place[1]));
     let margin = ((high - low) * 0.25).max(0.1);
     let plot = Plot::new("pareto")
         .height(height.max(80.0))
@@ -53,15 +53,17 @@ pub(super) fn show(ui: &mut egui::Ui, sweep: &SweepView, cost: Cost, height: f32
         .auto_bounds(Vec2b::TRUE)
         .include_x(low - margin * 0.3)
         .include_x(high + margin)
+        .include_y(bottom - 0.05)
+        .include_y(top + 0.05)
         .show_crosshair(false)
         .x_axis_label(unit)
         .y_axis_label("error, RMS %")
-        .x_axis_formatter(move |mark, _| power(mark))
+        .x_axis_formatter(move |mark, _| tick(mark))
         .y_axis_formatter(move |mark, _| {
             if has_zero && mark.value <= lowest + 0.5 {
                 "0".to_owned()
             } else {
-                power(mark)
+                tick(mark)
             }
         })
         .label_formatter(|_| None);
@@ -97,6 +99,18 @@ pub(super) fn show(ui: &mut egui::Ui, sweep: &SweepView, cost: Cost, height: f32
         .on_hover_cursor(egui::CursorIcon::PointingHand)
         .show_tooltip_text(RichText::new(describe(&near)).color(Color32::PLACEHOLDER));
     is_clicked.then_some(near)
+}
+
+/// The number at a mark, with as many digits as tell it from the next one.
+fn tick(mark: GridMark) -> String {
+    let value = 10f64.powf(mark.value);
+    let step = value * (10f64.powf(mark.step_size.abs()) - 1.0);
+    let digits = -step.log10().floor();
+    if step < 0.01 * value && value < 1e6 && (0.0..=9.0).contains(&digits) {
+        format!("{value:.0$}", digits as usize)
+    } else {
+        short(value)
+    }
 }
 
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
