@@ -134,7 +134,7 @@ fn dots(sweep: &SweepView, cost: Cost) -> Vec<Dot<'_>> {
     };
     let floors = [floor(0), floor(1)];
     let dot = |(alternative, value): &(_, [f64; 2])| Dot {
-        alternative: *alternative,
+        alternative,
         value: *value,
         place: [0, 1].map(|axis| value[axis].max(floors[axis]).log10()),
     };
