@@ -1,18 +1,25 @@
 //! The application: a document, the lanes that work for it, and what is on the screen.
 
 mod compare;
+mod files;
 mod news;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use eframe::egui;
 use eframe::egui_wgpu::RenderState;
+use shadewright_compiler::manifest::Node;
 use shadewright_compiler::{Catalog, Library, Report};
+use shadewright_runtime::frame::Frame;
 use shadewright_runtime::gpu::Gpu;
-use shadewright_runtime::scene::SceneFile;
+use shadewright_runtime::scene::{Scene, SceneFile};
+
+use web_time::Instant;
 
 use crate::compare::Compare;
-use crate::document::{Document, Draft};
+use crate::document::{Document, Draft, step_path};
+use crate::files::{Dialog, Kept, Modules};
 use crate::panels::{self, Tabs, TreeState, Viewport};
 use crate::tree::{Row, rows};
 use crate::work::{Bench, Lane, Shot};
@@ -23,6 +30,22 @@ pub struct Start {
     pub document: Document,
     /// From where modules come.
     pub library: Arc<dyn Library>,
+    /// What was kept of the last time.
+    pub kept: Kept,
+    /// Where that is kept; `None`: nowhere.
+    pub state_file: Option<PathBuf>,
+}
+
+impl Start {
+    /// With a scene and the standard library, keeping nothing.
+    pub fn with(scene: SceneFile) -> Self {
+        Self {
+            document: Document::new(scene),
+            library: shadewright_modules::library(),
+            kept: Kept::default(),
+            state_file: None,
+        }
+    }
 }
 
 /// The lanes: what one does keeps no other waiting.
@@ -74,6 +97,16 @@ pub struct App {
     pub tabs: Tabs,
     /// What is compared with what.
     pub compare: Compare,
+    /// The dialog that is open.
+    pub dialog: Option<Dialog>,
+    /// What is kept for the next start.
+    pub kept: Kept,
+    /// The user's folder of modules.
+    pub modules: Option<Modules>,
+    pub(crate) context: egui::Context,
+    state_file: Option<PathBuf>,
+    /// What was kept last, and when something was found to be kept.
+    keeping: (Kept, Option<Instant>),
     /// Document's version and the library, as of [`App::version`].
     seen: Option<(u64, Arc<Catalog>)>,
 }
@@ -90,7 +123,7 @@ impl App {
             let context = context.clone();
             Lane::new(name, Bench::new(gpu.clone()), move || context.request_repaint())
         };
-        Ok(Self {
+        let mut app = Self {
             lanes: Lanes {
                 view: lane("view"),
                 desk: lane("desk"),
@@ -102,15 +135,31 @@ impl App {
             render_state,
             version: 0,
             rows: Vec::new(),
-            selected: "materials".to_owned(),
+            selected: String::new(),
             problems: Vec::new(),
             message: String::new(),
             viewport: Viewport::default(),
             tree: TreeState::default(),
-            tabs: Tabs::default(),
             compare: Compare::default(),
+            tabs: Tabs {
+                shown: start.kept.tab,
+                ..Tabs::default()
+            },
+            dialog: None,
+            keeping: (start.kept.clone(), None),
+            kept: start.kept,
+            modules: None,
+            context: context.clone(),
+            state_file: start.state_file,
             seen: None,
-        })
+        };
+        if !app.kept.selected.is_empty() {
+            app.selected.clone_from(&app.kept.selected);
+        }
+        if let Some(folder) = app.kept.modules.clone() {
+            app.watch(&folder);
+        }
+        Ok(app)
     }
 
     /// The scene at this moment.
@@ -146,6 +195,17 @@ impl App {
         }
     }
 
+    /// The recipe of what is selected: the material that holds it, that of a whole object, or the display pass.
+    pub fn selected_recipe(&self) -> Option<Node> {
+        let frame = self.viewport.frame()?;
+        let index = subject(self.document.scene().scene(), frame, &self.selected);
+        let material = match index {
+            Some(index) => frame.materials.get(index),
+            None => frame.display.as_ref(),
+        };
+        Some((*material?.recipe).clone())
+    }
+
     /// Edits another scene from now on. The one before is kept where it was saved only.
     pub fn open(&mut self, scene: SceneFile) {
         self.message = format!("opened {}", scene.source().name);
@@ -173,6 +233,12 @@ impl App {
         self.seen = Some(now);
         self.version += 1;
         self.rows = rows(self.document.scene(), &self.catalog, &self.document.state().parked);
+        if self.selected.is_empty() {
+            // The first thing that has more than a name.
+            let rich = |row: &&Row| row.is_choice() && row.module.as_ref().is_some_and(|module| !module.manifest.slots.is_empty());
+            let first = self.rows.iter().filter(|row| row.path.starts_with("materials")).find(rich);
+            self.selected = first.map(|row| row.path.clone()).unwrap_or_default();
+        }
         if self.selected_row().is_none() {
             // What was selected is gone: what is around it is the nearest.
             let around = self.rows.iter().filter(|row| self.selected.starts_with(&row.path));
@@ -185,6 +251,7 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, context: &egui::Context, _: &mut eframe::Frame) {
         self.hear();
+        self.mind_files(context);
         self.refresh();
         self.ask();
         if context.input(|input| input.pointer.any_released() || !input.pointer.any_down() && input.keys_down.is_empty()) {
@@ -192,8 +259,13 @@ impl eframe::App for App {
         }
     }
 
+    fn on_exit(&mut self) {
+        self.keep_now();
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         panels::show(self, ui);
+        self.show_dialog(ui.ctx());
         // What the panels have changed is asked for at once, not with the next input.
         self.refresh();
         self.ask();
@@ -203,9 +275,33 @@ impl eframe::App for App {
 impl App {
     /// Opens one of the scenes that come with the explorer.
     pub fn open_example(&mut self, example: &crate::scenes::Example) {
-        match SceneFile::parse(example.name, example.text, std::path::Path::new("examples/scenes")) {
+        match example.scene() {
             Ok(scene) => self.open(scene),
             Err(report) => self.message = crate::work::reason(&report),
         }
     }
+}
+
+/// Which of a frame's materials a path of the scene is about; `None`: the display pass.
+///
+/// A light or the pass is about the first material: it is in all of them.
+pub fn subject(scene: &Scene, frame: &Frame, path: &str) -> Option<usize> {
+    if path.starts_with("display") || path.starts_with("post") {
+        return None;
+    }
+    let drawn = scene
+        .objects
+        .iter()
+        .enumerate()
+        .filter(|(_, object)| object.visible || object.casts_shadow);
+    let mut drawn = drawn.zip(&frame.draws);
+    let is_meant = |index: usize, material: &str| {
+        let name = format!("materials{}", step_path(material));
+        let below = path
+            .strip_prefix(&name)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
+        below || path == format!("objects[{index}]")
+    };
+    let found = drawn.find(|((index, object), _)| is_meant(*index, &object.material));
+    Some(found.map_or(0, |(_, draw)| draw.material))
 }

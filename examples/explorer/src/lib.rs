@@ -9,6 +9,7 @@
 //! - [`tree`]: the modules that stand in the scene, and what else could stand in their places.
 //! - [`work`]: whatever takes longer than a frame of the window, done beside it.
 //! - [`compare`]: what is true, and how far from it a picture is.
+//! - [`files`]: scenes, pictures, modules and what is kept between two starts.
 //! - [`panels`]: what is on the screen.
 //! - [`App`]: all of it together.
 
@@ -17,11 +18,12 @@
 mod app;
 pub mod compare;
 pub mod document;
+pub mod files;
 pub mod panels;
 pub mod scenes;
 mod setup;
 pub mod tree;
 pub mod work;
 
-pub use app::{App, Lanes, Problem, Start};
+pub use app::{App, Lanes, Problem, Start, subject};
 pub use setup::setup;

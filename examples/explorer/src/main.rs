@@ -1,19 +1,28 @@
 //! The explorer, in a window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::Parser;
 use eframe::egui;
 use explorer::document::Document;
+use explorer::files::{Kept, Modules, state_file};
 use explorer::{App, Start, scenes};
+use shadewright_runtime::image::write_atomically;
 use shadewright_runtime::scene::SceneFile;
 
 /// An interactive explorer of shading permutations
 #[derive(Parser)]
 struct Options {
-    /// Scene (*.scene.ron), or the name of an example
+    /// Scene (*.scene.ron), or the name of an example; else what was edited last
     scene: Option<PathBuf>,
+    /// Folder of modules that come before those of the standard library, watched for changes
+    #[arg(long, value_name = "FOLDER")]
+    modules: Option<PathBuf>,
+    /// Begin afresh, and keep nothing for the next start
+    #[arg(long)]
+    fresh: bool,
 }
 
 fn main() -> ExitCode {
@@ -27,19 +36,63 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(options: &Options) -> Result<(), String> {
-    let example = options.scene.as_ref().and_then(|scene| scenes::find(&scene.to_string_lossy()));
-    let scene = match (&options.scene, example) {
-        (Some(path), None) => SceneFile::read(path).map_err(|report| report.render())?,
-        (_, example) => {
-            let example = example.unwrap_or(&scenes::ALL[0]);
-            SceneFile::parse(example.name, example.text, std::path::Path::new("examples/scenes")).map_err(|report| report.render())?
+/// With what to begin: what is asked for, else what was edited last, else the first example.
+fn start(options: &Options) -> Result<Start, String> {
+    let state_file = if options.fresh { None } else { state_file() };
+    let mut kept = state_file.as_deref().map(Kept::read).unwrap_or_default();
+    let example = |example: &scenes::Example| example.scene().map_err(|report| report.render());
+    let document = match &options.scene {
+        Some(asked) => match scenes::find(&asked.to_string_lossy()) {
+            Some(found) => Document::new(example(found)?),
+            None => {
+                let path = std::path::absolute(asked).map_err(|error| error.to_string())?;
+                kept.remember(&path);
+                Document::new(
+                    SceneFile::read(&path)
+                        .map_err(|report| report.render())?
+                        .with_files(scenes::files()),
+                )
+            }
+        },
+        None => match last(&mut kept, state_file.as_deref()) {
+            Some(document) => document,
+            None => Document::new(example(&scenes::ALL[0])?),
+        },
+    };
+    if let Some(folder) = &options.modules {
+        kept.modules = Some(folder.clone());
+    }
+    let own = kept.modules.clone().filter(|folder| folder.is_dir());
+    if own.is_none()
+        && let Some(folder) = kept.modules.take()
+    {
+        log::warn!("{} is no folder", folder.display());
+    }
+    Ok(Start {
+        document,
+        library: own.as_deref().map_or_else(shadewright_modules::library, Modules::library),
+        kept,
+        state_file,
+    })
+}
+
+/// What was edited last. Where it may have ended the program, it is put aside.
+fn last(kept: &mut Kept, state_file: Option<&Path>) -> Option<Document> {
+    let state = kept.state.take()?;
+    if kept.starting {
+        let aside = state_file?.with_file_name("aside.scene.ron");
+        match write_atomically(&aside, state.text.as_bytes()) {
+            Ok(()) => kept.remember(&aside),
+            Err(error) => log::error!("{error}"),
         }
-    };
-    let start = Start {
-        document: Document::new(scene),
-        library: shadewright_modules::library(),
-    };
+        return None;
+    }
+    let restored = Document::restored(state, Arc::clone(&kept.saved), &scenes::files());
+    restored.map_err(|report| log::warn!("{}", report.render())).ok()
+}
+
+fn run(options: &Options) -> Result<(), String> {
+    let start = start(options)?;
     let mut native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_inner_size([1440.0, 900.0])

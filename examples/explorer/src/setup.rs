@@ -3,17 +3,11 @@
 use std::sync::Arc;
 
 use eframe::egui_wgpu::{WgpuSetup, WgpuSetupCreateNew};
-use eframe::wgpu;
+use shadewright_runtime::gpu::Gpu;
 
 /// A device with what the runtime uses where the adapter has it.
 pub fn setup() -> WgpuSetup {
     let mut setup = WgpuSetupCreateNew::without_display_handle();
-    setup.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
-        label: Some("explorer"),
-        required_features: adapter.features()
-            & (wgpu::Features::FLOAT32_FILTERABLE | wgpu::Features::FLOAT32_BLENDABLE | wgpu::Features::TIMESTAMP_QUERY),
-        required_limits: adapter.limits(),
-        ..Default::default()
-    });
+    setup.device_descriptor = Arc::new(Gpu::descriptor);
     WgpuSetup::CreateNew(setup)
 }

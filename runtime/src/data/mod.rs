@@ -52,15 +52,23 @@ pub enum DecodeError {
     Damaged(String),
 }
 
+/// The decoder of a format.
+///
+/// # Errors
+/// There is none.
+pub(crate) fn decoder(format: &str) -> Result<Decoder, DecodeError> {
+    let found = FORMATS.iter().find(|(name, _)| *name == format);
+    found
+        .map(|(_, decoder)| *decoder)
+        .ok_or_else(|| DecodeError::UnknownFormat(format.to_owned()))
+}
+
 /// The numbers in a file's bytes: at least one, all finite.
 ///
 /// # Errors
 /// There is no such format, or the bytes are not of it.
 pub fn decode(format: &str, bytes: &[u8]) -> Result<Vec<f32>, DecodeError> {
-    let Some((_, decoder)) = FORMATS.iter().find(|(name, _)| *name == format) else {
-        return Err(DecodeError::UnknownFormat(format.to_owned()));
-    };
-    let numbers = decoder(bytes).map_err(DecodeError::Damaged)?;
+    let numbers = decoder(format)?(bytes).map_err(DecodeError::Damaged)?;
     data::finite(&numbers).map_err(DecodeError::Damaged)?;
     Ok(numbers)
 }
@@ -71,22 +79,30 @@ pub fn decode(format: &str, bytes: &[u8]) -> Result<Vec<f32>, DecodeError> {
 /// As for [`decode`]; the file cannot be read, or is larger than [`MAX_DATA`].
 pub fn read(path: &Path, format: &str) -> Result<Vec<f32>, DecodeError> {
     // Said before the file is looked for: what is wrong is the module, whatever the file.
-    if FORMATS.iter().all(|(name, _)| *name != format) {
-        return Err(DecodeError::UnknownFormat(format.to_owned()));
-    }
-    let failed = |error: std::io::Error| DecodeError::Damaged(error.to_string());
+    decoder(format)?;
+    decode(format, &read_bytes(path, MAX_DATA).map_err(DecodeError::Damaged)?)
+}
+
+/// The bytes of a file on disk.
+///
+/// # Errors
+/// Says why it cannot be read, or that it has more than `most` bytes.
+pub(crate) fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, String> {
+    let failed = |error: std::io::Error| error.to_string();
     if path.is_dir() {
-        return Err(DecodeError::Damaged("is a folder".to_owned()));
+        return Err("is a folder".to_owned());
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(failed)?;
-    file.take(MAX_DATA + 1).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > MAX_DATA {
-        return Err(DecodeError::Damaged(format!(
-            "longer than the {MAX_DATA} bytes that a file may have"
-        )));
+    // Asked before, so that nothing is read of what is too large; and after, because not every file knows how long it is.
+    let length = file.metadata().map_err(failed)?.len();
+    if length <= most {
+        file.take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
     }
-    decode(format, &bytes)
+    if length.max(bytes.len() as u64) > most {
+        return Err(format!("longer than the {most} bytes that a file may have"));
+    }
+    Ok(bytes)
 }
 
 /// The error about a file that somebody names, from a diagnostic that is made of code, message and label.

@@ -11,6 +11,7 @@ mod needs;
 mod plan;
 mod prepare;
 mod programs;
+mod reading;
 mod render;
 mod target;
 #[cfg(test)]
@@ -25,6 +26,7 @@ pub use description::{Bounds, Camera, Draw, Frame, Lights, Material, Mesh, Setti
 pub use late::{Fallback, Fallbacks, Late, Part};
 pub use needs::{Need, PipelineState, Stage, needs};
 pub use prepare::{Prepared, Progress};
+pub use reading::{DisplayReading, HdrReading};
 pub use render::Renderer;
 pub use target::Targets;
 pub use times::{CpuTimes, FrameTimes, PassTime};

@@ -1,6 +1,5 @@
 //! The programs of a frame: each recipe and pass is compiled once, many at a time.
 
-use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
@@ -9,7 +8,7 @@ use shadewright_compiler::manifest::{Filling, Node};
 use shadewright_compiler::program::{Program, Recipe};
 use shadewright_compiler::{Report, reflect};
 
-use crate::gpu::lock;
+use crate::gpu::{Recent, lock};
 
 /// A recipe and a pass of it, as a key.
 type Key = (String, String);
@@ -17,7 +16,7 @@ type Key = (String, String);
 /// Compiled programs by recipe and pass.
 pub(crate) struct Programs {
     catalog: Arc<Catalog>,
-    made: Mutex<HashMap<Key, Arc<Program>>>,
+    made: Mutex<Recent<Key, Arc<Program>>>,
 }
 
 /// The recipe as text: equal for equal trees.
@@ -48,12 +47,22 @@ impl Programs {
         // Found out when first asked for: here, on all cores or in the background, and not while a frame is drawn.
         program.hash();
         program.reflection();
-        Ok(Arc::clone(lock(&self.made).entry(key).or_insert(program)))
+        Ok(Arc::clone(lock(&self.made).get_or_insert(key, || program)))
     }
 
     /// The program of a pass, if it has been compiled.
     pub fn find(&self, root: &Node, pass: &str) -> Option<Arc<Program>> {
         lock(&self.made).get(&(text_of(root), pass.to_owned())).map(Arc::clone)
+    }
+
+    /// A frame begins: what it asks for is not forgotten at its end.
+    pub fn begin(&self) {
+        lock(&self.made).begin();
+    }
+
+    /// Forgets what was asked for longest ago, until so many are left or only those of the present frame.
+    pub fn trim(&self, most: usize) {
+        lock(&self.made).trim(most);
     }
 
     /// Compiles many on all cores, equal ones once.

@@ -5,13 +5,13 @@
 
 use std::collections::HashMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 use rayon::prelude::*;
 use shadewright_compiler::Validated;
 use shadewright_compiler::catalog::Catalog;
 use shadewright_compiler::manifest::Node;
 use shadewright_compiler::program::Program;
+use web_time::Instant;
 
 use super::Frame;
 use super::draw::Drawing;
@@ -47,6 +47,8 @@ pub struct Renderer {
     uploads: Uploads,
     kept: Kept,
     formats: Option<HdrFormats>,
+    /// Most programs, and most pipelines, that are kept; `None`: all.
+    capacity: Option<usize>,
     pub(super) clock: Option<Clock>,
 }
 
@@ -66,6 +68,7 @@ impl Renderer {
             uploads: Uploads::default(),
             kept: Kept::new(),
             formats: None,
+            capacity: None,
             clock: None,
         }
     }
@@ -89,6 +92,12 @@ impl Renderer {
     /// Pipelines found and made so far.
     pub fn pipeline_counts(&self) -> Counts {
         self.pipelines.counts()
+    }
+
+    /// Keeps at most so many programs, and as many pipelines, beside those of the latest frame, whichever was drawn with last: for hosts that draw
+    /// with ever new permutations. By itself a renderer keeps all.
+    pub fn set_capacity(&mut self, most: usize) {
+        self.capacity = Some(most);
     }
 
     /// The program that draws a recipe's own pass, compiled if it is new.
@@ -115,6 +124,8 @@ impl Renderer {
     pub fn render(&mut self, frame: &Frame) -> Result<Targets, RuntimeError> {
         let hdr = self.hdr(frame)?;
         let start = Instant::now();
+        self.programs.begin();
+        self.pipelines.begin();
         let plan = Plan::of(&self.programs, frame, hdr, &Cut::default())?;
         let planned = Instant::now();
         let wanted = requests(&plan, frame)?;
@@ -124,7 +135,12 @@ impl Renderer {
             clock.cpu.link = planned - start;
             clock.cpu.pipelines = planned.elapsed();
         }
-        self.show(frame, &plan)
+        let shown = self.show(frame, &plan);
+        if let Some(most) = self.capacity {
+            self.programs.trim(most);
+            self.pipelines.trim(most);
+        }
+        shown
     }
 
     /// Draws what is planned.

@@ -1,13 +1,10 @@
 //! The device: found or given, with errors that come back instead of panicking.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use super::GpuError;
-
-/// What to do where there is no driver.
-const ADVICE: &str = "Install a GPU driver, or the software one: on Debian and Ubuntu `apt-get install mesa-vulkan-drivers`, \
-on Fedora `dnf install mesa-vulkan-drivers`, on Arch `pacman -S vulkan-swrast`.";
+use super::form::Form;
 
 /// How long one submission may take. A software driver needs minutes for a large reference image; a driver that hangs needs forever.
 pub(super) const PATIENCE: Duration = Duration::from_secs(900);
@@ -18,11 +15,21 @@ const WELCOME: wgpu::Features = wgpu::Features::FLOAT32_FILTERABLE
     .union(wgpu::Features::TIMESTAMP_QUERY)
     .union(wgpu::Features::PIPELINE_CACHE);
 
+/// Whether the host's thread may wait for the GPU. On the web it may not: what is waited for comes only after the thread has gone back to the browser.
+pub(super) const MAY_WAIT: bool = !cfg!(target_arch = "wasm32");
+
 /// What the device's callbacks leave for the next call to find.
 #[derive(Debug, Default)]
 struct Faults {
     lost: Mutex<Option<String>>,
     uncaptured: Mutex<Option<GpuError>>,
+}
+
+impl Faults {
+    /// Leaves an error, unless one is there that nobody has found yet.
+    fn leave(&self, error: GpuError) {
+        lock(&self.uncaptured).get_or_insert(error);
+    }
 }
 
 /// A lock that a panic elsewhere does not take away: the data is replaced whole, never left half-written.
@@ -37,31 +44,19 @@ pub struct Gpu {
     queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
     faults: Arc<Faults>,
+    form: Form,
 }
 
 impl Gpu {
-    /// Finds the best adapter, a real GPU before a software driver, and opens it without a window.
-    /// Honours `WGPU_ADAPTER_NAME` (part of a name), `WGPU_BACKEND`, and the Vulkan loader's own variables.
-    ///
-    /// # Errors
-    /// [`GpuError::NoAdapter`] where there is none, [`GpuError::NoDevice`] where it cannot be opened.
-    pub fn headless() -> Result<Self, GpuError> {
-        let wanted = std::env::var("WGPU_ADAPTER_NAME").ok().filter(|name| !name.is_empty());
-        // OpenGL is asked only where nothing else answers: its loader is slow to start and prints to standard error.
-        let adapter = choose(adapters(wgpu::Backends::all() - wgpu::Backends::GL), wanted.as_deref())
-            .or_else(|_| choose(adapters(wgpu::Backends::all()), wanted.as_deref()))?;
-        let info = adapter.get_info();
-        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+    /// What a device is to be asked for: the features of this adapter that are used where they are there, and its limits. For a host that opens the
+    /// device itself and gives it to [`Gpu::from_parts`].
+    pub fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+        wgpu::DeviceDescriptor {
             label: Some("shadewright"),
             required_features: adapter.features() & WELCOME,
             required_limits: adapter.limits(),
             ..Default::default()
-        });
-        let (device, queue) = pollster::block_on(request).map_err(|error| GpuError::NoDevice {
-            adapter: info.name.clone(),
-            message: error.to_string(),
-        })?;
-        Ok(Self::from_parts(device, queue))
+        }
     }
 
     /// Takes a caller's device. Its handlers of uncaptured errors and of loss are replaced: wgpu's own would panic.
@@ -70,7 +65,7 @@ impl Gpu {
         let seen = Arc::clone(&faults);
         device.on_uncaptured_error(Arc::new(move |error| {
             log::error!("uncaptured GPU error: {error}");
-            lock(&seen.uncaptured).get_or_insert(typed("a GPU command", error));
+            seen.leave(typed("a GPU command", error));
         }));
         let seen = Arc::clone(&faults);
         device.set_device_lost_callback(move |reason, message| {
@@ -84,7 +79,20 @@ impl Gpu {
             queue,
             info,
             faults,
+            form: Form::default(),
         }
+    }
+
+    /// The same device, to which programs go in this form. What has been made stays as it is.
+    #[must_use]
+    pub fn with_form(mut self, form: Form) -> Self {
+        self.form = form;
+        self
+    }
+
+    /// In which form programs go to the device.
+    pub fn form(&self) -> Form {
+        self.form
     }
 
     /// The device.
@@ -102,7 +110,7 @@ impl Gpu {
         &self.info
     }
 
-    /// The adapter's name and driver in one line, for people and reports.
+    /// The adapter's name and driver in one line, for people and reports. Browsers tell neither.
     pub fn name(&self) -> String {
         let wgpu::AdapterInfo {
             name,
@@ -110,6 +118,7 @@ impl Gpu {
             backend,
             ..
         } = &self.info;
+        let name = if name.is_empty() { "a GPU without a name" } else { name };
         match driver_info.as_str() {
             "" => format!("{name}, {backend}"),
             driver => format!("{name}, {driver}, {backend}"),
@@ -167,7 +176,8 @@ impl Gpu {
         lost.map_or(error, GpuError::Lost)
     }
 
-    /// Runs calls of wgpu and returns the first error that they caused on this thread.
+    /// Runs calls of wgpu and returns the first error that they caused on this thread. On the web nobody knows yet: the error is what a later call of
+    /// [`Gpu::check`] finds, and what was made is invalid.
     ///
     /// # Errors
     /// Whatever wgpu found wrong; `what` says in it what was being done.
@@ -177,17 +187,37 @@ impl Gpu {
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let result = calls(&self.device);
-        let mut first = None;
-        for scope in [validation, internal, memory] {
-            first = first.or(pollster::block_on(scope.pop()));
-        }
-        match first {
-            Some(error) => Err(self.or_lost(typed(what, error))),
+        match self.first_error(what, [validation, internal, memory]) {
+            Some(error) => Err(self.or_lost(error)),
             None => self.check().map(|()| result),
         }
     }
 
-    /// Waits until the GPU has done everything that was submitted.
+    /// Ends the scopes in this order; the first error that one of them caught.
+    #[cfg(not(target_arch = "wasm32"))]
+    #[allow(clippy::unused_self, reason = "on the web it is where errors are left")]
+    fn first_error(&self, what: &str, scopes: [wgpu::ErrorScopeGuard; 3]) -> Option<GpuError> {
+        let errors = scopes.map(|scope| pollster::block_on(scope.pop()));
+        errors.into_iter().flatten().next().map(|error| typed(what, error))
+    }
+
+    /// Ends the scopes in this order, and has the first error that one of them caught left for the next check.
+    #[cfg(target_arch = "wasm32")]
+    fn first_error(&self, what: &str, scopes: [wgpu::ErrorScopeGuard; 3]) -> Option<GpuError> {
+        let (faults, what) = (Arc::clone(&self.faults), what.to_owned());
+        let errors = scopes.map(wgpu::ErrorScopeGuard::pop);
+        wasm_bindgen_futures::spawn_local(async move {
+            for error in errors {
+                if let Some(error) = error.await {
+                    log::error!("{what}: {error}");
+                    return faults.leave(typed(&what, error));
+                }
+            }
+        });
+        None
+    }
+
+    /// Waits until the GPU has done everything that was submitted. On the web it waits for nothing.
     ///
     /// # Errors
     /// The device was lost, or did not answer for a quarter of an hour.
@@ -232,42 +262,6 @@ impl Gpu {
             buffer
         })
     }
-
-    /// Submits the commands, waits, and copies the first `size` bytes of `source` to the host. `source` is a `COPY_SRC` buffer.
-    ///
-    /// # Errors
-    /// The commands are invalid, or the device fails.
-    pub fn read(&self, what: &str, mut commands: wgpu::CommandEncoder, source: &wgpu::Buffer, size: u64) -> Result<Vec<u8>, GpuError> {
-        let padded = size.next_multiple_of(4);
-        let staging = self.scoped(what, |device| {
-            let staging = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(what),
-                size: padded,
-                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-                mapped_at_creation: false,
-            });
-            commands.copy_buffer_to_buffer(source, 0, &staging, 0, padded);
-            self.queue.submit([commands.finish()]);
-            staging
-        })?;
-        let failed = |message: String| GpuError::Driver {
-            what: what.to_owned(),
-            message,
-        };
-        let (sender, receiver) = mpsc::channel();
-        // The receiver lives until the end of this function, and nobody else waits for what is sent.
-        staging.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
-        self.wait()?;
-        // Another thread's poll may be the one that runs the callback, a moment after this thread's has returned.
-        match receiver.recv_timeout(PATIENCE) {
-            Ok(Ok(())) => {}
-            Ok(Err(error)) => return Err(failed(error.to_string())),
-            Err(_) => return Err(failed("the buffer was not mapped".into())),
-        }
-        let mut bytes = staging.slice(..).get_mapped_range().map_err(|e| failed(e.to_string()))?.to_vec();
-        bytes.truncate(usize::try_from(size).unwrap_or(usize::MAX));
-        Ok(bytes)
-    }
 }
 
 /// wgpu's error as ours.
@@ -284,53 +278,6 @@ fn typed(what: &str, error: wgpu::Error) -> GpuError {
             message: description,
         },
     }
-}
-
-/// Adapters of these backends, as far as `WGPU_BACKEND` allows them.
-fn adapters(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    descriptor.backends &= backends;
-    let instance = wgpu::Instance::new(descriptor);
-    pollster::block_on(instance.enumerate_adapters(backends))
-}
-
-/// The best of the adapters that can run storage buffers and compute.
-fn choose(adapters: Vec<wgpu::Adapter>, wanted: Option<&str>) -> Result<wgpu::Adapter, GpuError> {
-    let needed = wgpu::DownlevelFlags::COMPUTE_SHADERS | wgpu::DownlevelFlags::VERTEX_STORAGE;
-    let missing = |reason: String| GpuError::NoAdapter {
-        reason,
-        advice: ADVICE.to_owned(),
-    };
-    let mut names = Vec::new();
-    let best = adapters
-        .into_iter()
-        .filter(|adapter| adapter.get_downlevel_capabilities().flags.contains(needed))
-        .inspect(|adapter| names.push(adapter.get_info().name))
-        .filter(|adapter| {
-            let name = adapter.get_info().name.to_lowercase();
-            wanted.is_none_or(|wanted| name.contains(&wanted.to_lowercase()))
-        })
-        .min_by_key(|adapter| rank(&adapter.get_info()));
-    match (best, wanted) {
-        (Some(adapter), _) => Ok(adapter),
-        (None, Some(wanted)) if !names.is_empty() => Err(missing(format!(
-            "WGPU_ADAPTER_NAME is {wanted:?}, but there is only {}",
-            names.join(", ")
-        ))),
-        (None, _) => Err(missing("no Vulkan, Metal, DirectX 12 or OpenGL driver answers".into())),
-    }
-}
-
-/// Smaller is better: real hardware first, then drivers other than OpenGL.
-fn rank(info: &wgpu::AdapterInfo) -> (u8, bool) {
-    let kind = match info.device_type {
-        wgpu::DeviceType::DiscreteGpu => 0,
-        wgpu::DeviceType::IntegratedGpu => 1,
-        wgpu::DeviceType::VirtualGpu => 2,
-        wgpu::DeviceType::Other => 3,
-        wgpu::DeviceType::Cpu => 4,
-    };
-    (kind, info.backend == wgpu::Backend::Gl)
 }
 
 #[cfg(test)]
@@ -365,17 +312,5 @@ mod tests {
             matches!(huge, Err(GpuError::Invalid { .. } | GpuError::OutOfMemory { .. })),
             "{huge:?}"
         );
-    }
-
-    /// Catches bytes lost at the end of odd lengths, on the way there or back.
-    #[test]
-    fn odd_bytes_come_back() {
-        let gpu = crate::gpu::testing::gpu();
-        for length in [1, 3, 4, 7] {
-            let bytes: Vec<u8> = (1..=length).collect();
-            let buffer = gpu.buffer("odd", wgpu::BufferUsages::COPY_SRC, &bytes, 0).unwrap();
-            let commands = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            assert_eq!(gpu.read("odd", commands, &buffer, u64::from(length)).unwrap(), bytes);
-        }
     }
 }

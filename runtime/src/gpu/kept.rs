@@ -1,12 +1,11 @@
 //! Values that are made once and kept.
 
-use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
 
-use super::GpuError;
 use super::device::lock;
+use super::{GpuError, Recent};
 
 /// A value that is made once.
 #[derive(Debug)]
@@ -19,12 +18,12 @@ struct Cell<V> {
 /// A map whose values are made at most once each; threads that want the same one wait for the first.
 #[derive(Debug)]
 pub(crate) struct Kept<K, V> {
-    cells: Mutex<HashMap<K, Arc<Cell<V>>>>,
+    cells: Mutex<Recent<K, Arc<Cell<V>>>>,
     hits: AtomicUsize,
     misses: AtomicUsize,
 }
 
-impl<K: Eq + Hash, V> Kept<K, V> {
+impl<K: Eq + Hash + Clone, V> Kept<K, V> {
     pub fn new() -> Self {
         Self {
             cells: Mutex::default(),
@@ -41,7 +40,7 @@ impl<K: Eq + Hash, V> Kept<K, V> {
                 making: Mutex::default(),
             })
         };
-        let cell = Arc::clone(lock(&self.cells).entry(key).or_insert_with(new));
+        let cell = Arc::clone(lock(&self.cells).get_or_insert(key, new));
         let _making = lock(&cell.making);
         if let Some(value) = cell.made.get() {
             self.hits.fetch_add(1, Ordering::Relaxed);
@@ -54,7 +53,17 @@ impl<K: Eq + Hash, V> Kept<K, V> {
 
     /// Whether the value is there; never waits for a thread that is making it.
     pub fn has(&self, key: &K) -> bool {
-        lock(&self.cells).get(key).is_some_and(|cell| cell.made.get().is_some())
+        lock(&self.cells).peek(key).is_some_and(|cell| cell.made.get().is_some())
+    }
+
+    /// A frame begins: what it asks for is not forgotten at its end.
+    pub fn begin(&self) {
+        lock(&self.cells).begin();
+    }
+
+    /// Forgets what was asked for longest ago, until so many are left or only those of the present frame.
+    pub fn trim(&self, most: usize) {
+        lock(&self.cells).trim(most);
     }
 
     /// How often values were found and made so far.

@@ -1,8 +1,7 @@
-//! Pipelines from programs: the IR goes to wgpu as it is, and what has been made is kept.
+//! Pipelines from programs: the IR goes to wgpu as it is, or the source form where a browser compiles, and what has been made is kept.
 //!
 //! Programs with equal canonical hashes share shader modules and pipelines, whatever recipes they came from.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -10,6 +9,7 @@ use shadewright_compiler::Validated;
 use shadewright_compiler::program::Program;
 use shadewright_compiler::reflect::{EntryPoint, Stage};
 
+use super::form::ir;
 use super::kept::{Counts, Kept};
 use super::layout::{GROUPS, bind_group_entries};
 use super::{Gpu, GpuError};
@@ -117,13 +117,27 @@ impl Pipelines {
         }
     }
 
+    /// A frame begins: what it asks for is not forgotten at its end.
+    pub(crate) fn begin(&self) {
+        self.shaders.begin();
+        self.render.begin();
+        self.compute.begin();
+    }
+
+    /// Forgets what was asked for longest ago, until so many of each kind are left or only those of the present frame.
+    pub(crate) fn trim(&self, most: usize) {
+        self.shaders.trim(most);
+        self.render.trim(most);
+        self.compute.trim(most);
+    }
+
     /// Takes this module wherever the program's own would be taken, however it was made. It must have the program's entry points, and what
     /// it reads must be bound where the program binds it. Pipelines that were made before stay.
     ///
     /// # Errors
     /// wgpu rejects the module.
     pub fn draw_with(&self, program: &Program, module: &Validated) -> Result<(), GpuError> {
-        self.shaders.get(program.hash(), || self.make_shader(program, module)).map(drop)
+        self.shaders.get(program.hash(), || self.make_shader(program, ir(module))).map(drop)
     }
 
     /// One render pipeline.
@@ -184,14 +198,15 @@ impl Pipelines {
     }
 
     fn shader(&self, program: &Program) -> Result<Arc<wgpu::ShaderModule>, GpuError> {
-        self.shaders.get(program.hash(), || self.make_shader(program, program.validated()))
+        self.shaders
+            .get(program.hash(), || self.make_shader(program, self.gpu.form().of(program)))
     }
 
-    fn make_shader(&self, program: &Program, module: &Validated) -> Result<wgpu::ShaderModule, GpuError> {
+    fn make_shader(&self, program: &Program, source: wgpu::ShaderSource) -> Result<wgpu::ShaderModule, GpuError> {
         self.gpu.scoped("shader module", |device| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(&program.reflection().pass),
-                source: wgpu::ShaderSource::Naga(Cow::Owned(module.module().clone())),
+                source,
             })
         })
     }

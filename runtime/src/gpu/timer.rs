@@ -1,10 +1,11 @@
 //! Times of passes on the GPU, by timestamp queries.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use web_time::Instant;
 use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings};
 
-use super::device::PATIENCE;
+use super::device::{MAY_WAIT, PATIENCE};
 use super::{Gpu, GpuError};
 
 /// Submissions whose times may be waited for.
@@ -84,8 +85,14 @@ impl Timer {
         Some(times.into_iter().filter_map(of).collect())
     }
 
-    /// The same, after waiting for the GPU.
+    /// The same, after waiting for the GPU. On the web, where nobody may wait, that is an error.
     pub(crate) fn wait(&mut self) -> Result<PassTimes, GpuError> {
+        if !MAY_WAIT {
+            return Err(GpuError::Unsupported {
+                what: "waiting for the times of passes".into(),
+                needs: "a thread that may wait for the GPU".into(),
+            });
+        }
         self.gpu.wait()?;
         let start = Instant::now();
         loop {

@@ -3,6 +3,7 @@
 mod exr;
 mod mip;
 mod png;
+#[cfg(not(target_arch = "wasm32"))]
 mod write;
 
 pub(crate) use self::exr::exr_sizes;
@@ -11,6 +12,7 @@ pub(crate) use mip::halved;
 pub use mip::{linear_to_srgb, mip_levels, srgb_to_linear};
 pub(crate) use png::texture_size;
 pub use png::{decode_texture, encode_png};
+#[cfg(not(target_arch = "wasm32"))]
 pub use write::write_atomically;
 
 /// Most texels along one side of a picture that is read.

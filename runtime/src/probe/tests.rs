@@ -7,6 +7,7 @@ use shadewright_compiler::program::Recipe;
 
 use super::gpu::MOST_ROWS;
 use super::*;
+use crate::gpu::Form;
 use crate::gpu::testing::{catalog, gpu, plain_gpu};
 
 const CATEGORY: &str = "(summary: \"tested\", order: 1, group: 2, defaults: {\"S\": {\"alpha\": 0.5}})";
@@ -34,6 +35,10 @@ const SOURCE: &str = "
     }";
 
 fn run(inputs: &[Json]) -> Result<Vec<Json>, RuntimeError> {
+    run_in(Form::Ir, inputs)
+}
+
+fn run_in(form: Form, inputs: &[Json]) -> Result<Vec<Json>, RuntimeError> {
     let catalog = catalog(&[
         ("tested/category.ron", CATEGORY),
         ("tested/interface.wgsl", INTERFACE),
@@ -41,13 +46,13 @@ fn run(inputs: &[Json]) -> Result<Vec<Json>, RuntimeError> {
         ("tested/lamp/lamp.wgsl", SOURCE),
     ]);
     let recipe = Recipe::parse("test", "\"lamp\"").unwrap();
-    let answer = probe(&gpu(), &catalog, &recipe, "eval", inputs)?;
+    let answer = probe(&gpu().with_form(form), &catalog, &recipe, "eval", inputs)?;
     assert_eq!((&answer["function"], &answer["device"]), (&json!("eval"), &json!(gpu().name())));
     Ok(answer["results"].as_array().unwrap().clone())
 }
 
 /// Catches lost order between batches, defaults and parameters that do not arrive, a padded instance buffer
-/// (its length would add lamps) and textures that are not white.
+/// (its length would add lamps) and textures that are not white; in the source form, an override or an entry point of another name.
 #[test]
 fn rows_come_back_in_order() {
     let rows = [
@@ -57,7 +62,9 @@ fn rows_come_back_in_order() {
         json!({"s": {"n": [0, 0, 2]}, "v": [0, 0, -1], "k": 0, "params": {"lamp.scale": 4}}),
     ];
     let expected = json!([[1.25, 3.0, 5.0], [7.25, 15.0, 28.25], [4.25, -4.0, "Infinity"], [0.25, 1.0, 3.0]]);
-    assert_eq!(Json::Array(run(&rows).unwrap()), expected);
+    for form in [Form::Ir, Form::Source] {
+        assert_eq!(Json::Array(run_in(form, &rows).unwrap()), expected, "{form:?}");
+    }
 }
 
 /// Catches a column at another number's place, rows that do not get the common row, and a column that nothing takes.

@@ -17,7 +17,7 @@ use super::check::Examiner;
 use super::gather::{Item, Look, as_choice, gather, slot_of};
 use super::recipe::Planter;
 use super::{Choice, Choices, LightDecl, SceneFile, view};
-use crate::frame::{Draw, Frame, Lights, Material, Mesh, Settings};
+use crate::frame::{Draw, Frame, Lights, Material, Settings};
 
 /// Most lights of a scene, those of glTF files included.
 pub const MAX_LIGHTS: usize = 1024;
@@ -36,7 +36,7 @@ pub(super) fn derive(file: &SceneFile, catalog: &Catalog, size: Option<[u32; 2]>
     let mut examiner = Examiner {
         parsed: &file.parsed,
         catalog,
-        assets: super::assets::Assets::new(&file.folder),
+        assets: super::assets::Assets::new(&file.folder, &file.files),
         errors: Vec::new(),
     };
     let size = size.unwrap_or(scene.size);
@@ -95,17 +95,13 @@ pub(super) fn derive(file: &SceneFile, catalog: &Catalog, size: Option<[u32; 2]>
         materials: Vec::new(),
     };
     maker.plant_lights(&kinds);
-    let mut mirrored: HashMap<*const Mesh, Arc<Mesh>> = HashMap::new();
     let mut draws = Vec::new();
     for item in &items {
         let Some(bounds) = item.mesh.bounds().filter(|_| item.visible || item.casts_shadow) else {
             continue;
         };
         let mesh = if item.model.determinant() < 0.0 {
-            let mirror = mirrored
-                .entry(Arc::as_ptr(&item.mesh))
-                .or_insert_with(|| Arc::new(item.mesh.mirrored()));
-            Arc::clone(mirror)
+            maker.assets.mirrored(&item.mesh)
         } else {
             Arc::clone(&item.mesh)
         };

@@ -42,9 +42,9 @@ pub(super) fn gather(examiner: &mut Examiner, pass: &Module) -> (Vec<Item>, Vec<
     let slots = &pass.manifest.slots;
     let mut meshes: HashMap<&str, Arc<Mesh>> = HashMap::new();
     for (name, shape) in &scene.meshes {
-        match shape.build(|file| examiner.assets.gltf(file)) {
+        match examiner.assets.mesh(shape) {
             Ok(mesh) => {
-                meshes.insert(name, Arc::new(mesh));
+                meshes.insert(name, mesh);
             }
             Err(error) => {
                 let code = super::code_of(&error);

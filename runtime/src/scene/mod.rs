@@ -7,6 +7,7 @@ mod assets;
 mod check;
 mod choice;
 mod derive;
+mod files;
 mod format;
 mod gather;
 mod include;
@@ -17,9 +18,9 @@ mod recipe;
 mod tests;
 mod view;
 
-pub use assets::MAX_PICTURE;
 pub use choice::{Choice, Choices, Picture};
 pub use derive::{MAX_LIGHTS, MAX_SIZE};
+pub use files::{Files, MAX_PICTURE};
 pub use format::{CameraDecl, GltfDecl, LightDecl, ObjectDecl, Scene};
 
 use std::path::{Path, PathBuf};
@@ -38,6 +39,7 @@ use crate::mesh::gltf::GltfError;
 pub struct SceneFile {
     parsed: Parsed<Scene>,
     folder: PathBuf,
+    files: Files,
 }
 
 impl SceneFile {
@@ -60,7 +62,8 @@ impl SceneFile {
         Self::parse(&name, &text, path.parent().unwrap_or(Path::new("")))
     }
 
-    /// Reads a scene from its text. `name` is what errors call it; files that it names are relative to `folder`.
+    /// Reads a scene from its text. `name` is what errors call it; files that it names are relative to `folder`, on disk unless
+    /// [`SceneFile::with_files`] says otherwise.
     ///
     /// # Errors
     /// The text is no RON, or no scene.
@@ -68,7 +71,20 @@ impl SceneFile {
         Ok(Self {
             parsed: parse(name, text)?,
             folder: folder.to_owned(),
+            files: Files::default(),
         })
+    }
+
+    /// The scene with its files taken from there. Scenes that are given the same share what is made of them: see [`Files`].
+    #[must_use]
+    pub fn with_files(mut self, files: Files) -> Self {
+        self.files = files;
+        self
+    }
+
+    /// Where its files come from.
+    pub fn files(&self) -> &Files {
+        &self.files
     }
 
     /// What is declared.
@@ -98,7 +114,7 @@ impl SceneFile {
     pub fn unset(&self, path: &str) -> Result<Self, Report> {
         let file = &self.parsed.file;
         let text = path::unset(&file.name, &file.text, path)?;
-        Self::parse(&file.name, &text, &self.folder)
+        Ok(Self::parse(&file.name, &text, &self.folder)?.with_files(self.files.clone()))
     }
 
     /// The scene with one value changed: `lights[0].fields.intensity`, `objects[pot].translate`, `post[0].fill.exposure.params.ev100`.
@@ -109,11 +125,11 @@ impl SceneFile {
     pub fn set(&self, path: &str, value: &str) -> Result<Self, Report> {
         let file = &self.parsed.file;
         let text = path::set(&file.name, &file.text, path, value)?;
-        Self::parse(&file.name, &text, &self.folder)
+        Ok(Self::parse(&file.name, &text, &self.folder)?.with_files(self.files.clone()))
     }
 
     /// What a renderer draws: camera, objects, lights, and the recipes that are derived from them. `size` (width, height) is instead of
-    /// the scene's own. Files that the scene names are read.
+    /// the scene's own. Files that the scene names are read, unless they are known from an earlier frame: see [`Files`].
     ///
     /// # Errors
     /// All that the scene says of modules, names, numbers and files that cannot be, located in its text.

@@ -345,8 +345,14 @@ mod tests {
         };
         assert_eq!(without("size"), TEXT.replace("    size: (4, 3),\n", ""));
         assert_eq!(without("size[1]"), TEXT.replace("(4, 3)", "(4, )"));
-        assert_eq!(without("lights[0]"), TEXT.replace("        (name: \"sun\", module: \"directional\"),\n", ""));
-        assert_eq!(without("lights[lamp].fields.intensity"), TEXT.replace("\"intensity\": \"800 lm\"", ""));
+        assert_eq!(
+            without("lights[0]"),
+            TEXT.replace("        (name: \"sun\", module: \"directional\"),\n", "")
+        );
+        assert_eq!(
+            without("lights[lamp].fields.intensity"),
+            TEXT.replace("\"intensity\": \"800 lm\"", "")
+        );
         assert_eq!(without("lights[sun].name"), TEXT.replace("name: \"sun\", ", ""));
         assert_eq!(unset("a.scene.ron", TEXT, "lights[3]").unwrap_err().code, codes::BAD_OVERRIDE_PATH);
         assert_eq!(unset("a.scene.ron", TEXT, "lights[").unwrap_err().code, codes::BAD_OVERRIDE_PATH);

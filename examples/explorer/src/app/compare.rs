@@ -76,6 +76,7 @@ impl App {
         self.lanes.view.ask(DrawThumbnail {
             pin: id,
             state,
+            files: self.document.scene().files().clone(),
             catalog: Arc::clone(&self.catalog),
             size: THUMBNAIL,
         });
@@ -149,6 +150,7 @@ impl App {
             first,
             values_of: painted.map(|painted| painted.targets.clone()),
             second,
+            files: self.document.scene().files().clone(),
             catalog: Arc::clone(&self.catalog),
         });
         self.compare.asked.beside = Some(key);

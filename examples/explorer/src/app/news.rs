@@ -31,6 +31,16 @@ impl App {
                 self.message = format!("{what}: {message}");
                 self.problems = vec![Problem::Other(what.to_owned(), message)];
             }
+            News::Found(found) => self.take_found(found),
+            News::Said(message) => self.message = message,
+            News::Library(Ok(catalog)) => {
+                self.message = format!("{} modules", catalog.modules().count());
+                self.set_catalog(catalog);
+            }
+            News::Library(Err(report)) => {
+                self.message = crate::work::reason(&report);
+                self.problems = vec![Problem::Report(report)];
+            }
             News::Legal(legal) => {
                 if legal.version == self.version {
                     self.tree.legal = Some(legal);

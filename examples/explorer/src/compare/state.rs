@@ -262,7 +262,7 @@ impl Default for Compare {
             sweep: None,
             tiles: Vec::new(),
             space: String::new(),
-            sheet_path: "sheet.png".to_owned(),
+            sheet_path: String::new(),
             problem: String::new(),
             truth_screen: Screen::default(),
             pin_screen: Screen::default(),

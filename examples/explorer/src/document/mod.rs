@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use shadewright_compiler::Report;
-use shadewright_runtime::scene::SceneFile;
+use shadewright_runtime::scene::{Files, SceneFile};
 
 pub use edit::{Ancestor, quoted, ron_of, step_path};
 
@@ -65,12 +65,12 @@ impl State {
         }
     }
 
-    /// Reads the text.
+    /// Reads the text; files that it names are those.
     ///
     /// # Errors
     /// It is no scene.
-    pub fn parse(&self) -> Result<SceneFile, Report> {
-        SceneFile::parse(&self.name, &self.text, &self.folder)
+    pub fn parse(&self, files: &Files) -> Result<SceneFile, Report> {
+        Ok(SceneFile::parse(&self.name, &self.text, &self.folder)?.with_files(files.clone()))
     }
 }
 
@@ -93,8 +93,8 @@ impl Document {
     ///
     /// # Errors
     /// The text is no scene.
-    pub fn restored(state: State, saved: Arc<str>) -> Result<Self, Report> {
-        let scene = state.parse()?;
+    pub fn restored(state: State, saved: Arc<str>, files: &Files) -> Result<Self, Report> {
+        let scene = state.parse(files)?;
         Ok(Self { saved, ..Self::new(scene) }.with(state))
     }
 
@@ -133,7 +133,7 @@ impl Document {
         self.state.name = name;
         self.state.folder = folder;
         self.saved = Arc::clone(&self.state.text);
-        if let Ok(scene) = self.state.parse() {
+        if let Ok(scene) = self.state.parse(self.scene.files()) {
             self.scene = scene;
         }
     }
@@ -186,7 +186,8 @@ impl Document {
     /// # Errors
     /// The text is no scene.
     pub fn replace(&mut self, what: &str, state: &State) -> Result<(), Report> {
-        let scene = SceneFile::parse(&self.state.name, &state.text, &self.state.folder)?;
+        let files = self.scene.files().clone();
+        let scene = SceneFile::parse(&self.state.name, &state.text, &self.state.folder)?.with_files(files);
         let parked = state.parked.clone();
         self.edit(what, |draft| {
             *draft = Draft { scene, parked };
@@ -236,7 +237,7 @@ impl Document {
         state.name.clone_from(&self.state.name);
         state.folder.clone_from(&self.state.folder);
         // Every state in the history was read before.
-        if let Ok(scene) = state.parse() {
+        if let Ok(scene) = state.parse(self.scene.files()) {
             self.scene = scene;
             self.version += 1;
             return std::mem::replace(&mut self.state, state);

@@ -3,6 +3,7 @@
 use eframe::egui::{self, Button, RichText};
 
 use crate::App;
+use crate::files::Purpose;
 use crate::scenes;
 
 /// The menus.
@@ -17,6 +18,7 @@ pub(super) fn menus(app: &mut App, ui: &mut egui::Ui) {
                     }
                 }
             });
+            files(app, ui);
         });
         ui.menu_button("Edit", |ui| {
             let undo = app.document.can_undo().map(|what| format!("Undo {what}"));
@@ -41,6 +43,49 @@ pub(super) fn menus(app: &mut App, ui: &mut egui::Ui) {
         let changed = if app.document.is_changed() { " *" } else { "" };
         ui.label(format!("{}{changed}", app.document.state().name));
     });
+}
+
+/// What is done with files.
+fn files(app: &mut App, ui: &mut egui::Ui) {
+    let ask = |app: &mut App, ui: &mut egui::Ui, purpose: Purpose, keys: &str| {
+        let mut button = Button::new(purpose.name());
+        if !keys.is_empty() {
+            button = button.shortcut_text(keys);
+        }
+        if ui.add(button).clicked() {
+            app.ask_path(purpose);
+        }
+    };
+    ask(app, ui, Purpose::Open, "Ctrl+O");
+    ui.menu_button("Recent", |ui| {
+        for path in app.kept.recent.clone() {
+            if ui.button(path.display().to_string()).clicked() {
+                app.open_file(path);
+            }
+        }
+        if app.kept.recent.is_empty() {
+            ui.weak("none yet");
+        }
+    });
+    if ui.add(Button::new("Save").shortcut_text("Ctrl+S")).clicked() {
+        app.save();
+    }
+    ask(app, ui, Purpose::SaveAs, "Ctrl+Shift+S");
+    ui.separator();
+    for purpose in [Purpose::Png, Purpose::Exr, Purpose::Wgsl, Purpose::Recipe] {
+        ask(app, ui, purpose, "");
+    }
+    ui.separator();
+    ask(app, ui, Purpose::Modules, "");
+    let folder = app.modules.as_ref().map(|modules| modules.folder.display().to_string());
+    if let Some(folder) = folder
+        && ui
+            .button("Standard modules only")
+            .on_hover_text(format!("now also those of {folder}"))
+            .clicked()
+    {
+        app.use_modules(None);
+    }
 }
 
 /// What happened last, what is being done, and what drawing costs.

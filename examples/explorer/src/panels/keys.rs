@@ -4,12 +4,16 @@ use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
 
 use super::{Tab, tree};
 use crate::App;
+use crate::files::Purpose;
 use crate::tree::Kind;
 
 const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
 const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
 const REDO_TOO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
 const SEARCH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::F);
+const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
+const SAVE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
+const SAVE_AS: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
 const UP: KeyboardShortcut = KeyboardShortcut::new(Modifiers::ALT, Key::ArrowUp);
 const DOWN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::ALT, Key::ArrowDown);
 
@@ -30,6 +34,15 @@ pub(super) fn take(app: &mut App, ui: &mut egui::Ui) {
     let hit = |ui: &egui::Ui, shortcut: &KeyboardShortcut| ui.input_mut(|input| input.consume_shortcut(shortcut));
     if hit(ui, &SEARCH) {
         app.tree.focus_search = true;
+    }
+    if hit(ui, &OPEN) {
+        app.ask_path(Purpose::Open);
+    }
+    if hit(ui, &SAVE_AS) {
+        app.ask_path(Purpose::SaveAs);
+    }
+    if hit(ui, &SAVE) {
+        app.save();
     }
     // A text field undoes its own typing and moves its own cursor.
     if ui.ctx().text_edit_focused() {

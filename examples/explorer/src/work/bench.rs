@@ -6,6 +6,9 @@ use shadewright_compiler::Catalog;
 use shadewright_runtime::frame::Renderer;
 use shadewright_runtime::gpu::Gpu;
 
+/// Pipelines that are kept: some dozens of permutations to go back to.
+const MOST_KEPT: usize = 96;
+
 /// A device, and a renderer that is kept from job to job.
 pub struct Bench {
     gpu: Gpu,
@@ -28,6 +31,7 @@ impl Bench {
         let gpu = &self.gpu;
         let (known, renderer) = self.renderer.get_or_insert_with(|| {
             let mut renderer = Renderer::new(gpu, Arc::clone(catalog));
+            renderer.set_capacity(MOST_KEPT);
             if let Err(error) = renderer.time_passes(true) {
                 log::info!("passes are not timed: {error}");
             }

@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use shadewright_compiler::Catalog;
 use shadewright_runtime::frame::Targets;
 use shadewright_runtime::gpu::{Gpu, RuntimeError};
+use shadewright_runtime::scene::Files;
 
 use super::{Bench, Job, News, Shot, Step, paint};
 use crate::compare::{Beside, Drawn, Errors, Told, Truths, Values, with_camera_of};
@@ -19,6 +20,8 @@ pub struct DrawBeside {
     pub values_of: Option<Targets>,
     /// The second picture: what it is of, and it itself where it is there already.
     pub second: Option<(Drawn, State, Option<Targets>)>,
+    /// Where its files are.
+    pub files: Files,
     /// The library.
     pub catalog: Arc<Catalog>,
 }
@@ -43,7 +46,7 @@ impl DrawBeside {
             Some((drawn, _, Some(targets))) => Some((drawn.clone(), targets.clone())),
             Some((drawn, state, None)) => {
                 let shot = Shot {
-                    scene: with_camera_of(&state.parse()?, drawn.camera.as_deref())?,
+                    scene: with_camera_of(&state.parse(&self.files)?, drawn.camera.as_deref())?,
                     catalog: Arc::clone(&self.catalog),
                     version: self.first.0,
                 };

@@ -21,6 +21,8 @@ use std::sync::Arc;
 use shadewright_compiler::{Catalog, Report};
 use shadewright_runtime::scene::SceneFile;
 
+use crate::files::Found;
+
 pub use bench::Bench;
 pub use beside::{DrawBeside, LoadTruths, PaintHeat, values};
 pub use lane::{Job, Lane, Progress, Step};
@@ -65,4 +67,10 @@ pub enum News {
     Legal(Legal),
     /// Of comparing.
     Compare(crate::compare::Told),
+    /// What a file holds.
+    Found(Found),
+    /// A library that was read, or what is wrong with it.
+    Library(Result<Arc<Catalog>, Report>),
+    /// Something was done.
+    Said(String),
 }

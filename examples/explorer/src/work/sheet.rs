@@ -1,12 +1,12 @@
 //! A sheet of pictures as a file.
 
-use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use shadewright_report::write::{Tile, sheet};
 
 use super::{Bench, Job, News, Step};
 use crate::compare::Told;
+use crate::files::save;
 
 /// Writes a sheet of pictures.
 pub struct WriteSheet {
@@ -15,22 +15,15 @@ pub struct WriteSheet {
     /// Width and height of each.
     pub size: [u32; 2],
     /// Where to.
-    pub path: PathBuf,
+    pub path: String,
 }
 
 impl WriteSheet {
     fn write(&self) -> Result<String, String> {
         let columns = (self.tiles.len() as f64).sqrt().ceil() as usize;
         let png = sheet(&self.tiles, self.size, columns).map_err(|error| error.to_string())?;
-        let name = self.path.display();
-        #[cfg(not(target_arch = "wasm32"))]
-        {
-            // Nothing is left half written.
-            let part = self.path.with_added_extension("part");
-            let written = std::fs::write(&part, &png).and_then(|()| std::fs::rename(&part, &self.path));
-            written.map_err(|error| format!("{name}: {error}"))?;
-        }
-        Ok(format!("wrote {name}, {} kB", png.len().div_ceil(1000)))
+        let place = save(&self.path, &png)?;
+        Ok(format!("wrote {place}, {} kB", png.len().div_ceil(1000)))
     }
 }
 

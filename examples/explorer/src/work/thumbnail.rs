@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use eframe::egui::ColorImage;
 use shadewright_compiler::Catalog;
 use shadewright_runtime::gpu::RuntimeError;
+use shadewright_runtime::scene::Files;
 
 use super::{Bench, Job, News, Step};
 use crate::compare::Told;
@@ -17,6 +18,8 @@ pub struct DrawThumbnail {
     pub pin: u64,
     /// What it keeps.
     pub state: State,
+    /// Where its files are.
+    pub files: Files,
     /// The library.
     pub catalog: Arc<Catalog>,
     /// Width and height, pixels.
@@ -25,7 +28,7 @@ pub struct DrawThumbnail {
 
 impl DrawThumbnail {
     fn draw(&self, bench: &mut Bench) -> Result<ColorImage, RuntimeError> {
-        let frame = self.state.parse()?.frame(&self.catalog, Some(self.size))?;
+        let frame = self.state.parse(&self.files)?.frame(&self.catalog, Some(self.size))?;
         let targets = bench.renderer(&self.catalog).render(&frame)?;
         let pixels = targets.read_display(bench.gpu())?.unwrap_or_default();
         Ok(picture(self.size, &pixels))

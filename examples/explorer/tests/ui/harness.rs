@@ -3,10 +3,9 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Role, Vec2};
-use egui_kittest::Harness;
+use eframe::egui::{Key, Modifiers, Role, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
-use explorer::document::Document;
+use egui_kittest::{Harness, Node};
 use explorer::{App, Start, scenes};
 use shadewright_runtime::scene::SceneFile;
 
@@ -20,16 +19,35 @@ pub fn open(example: &str) -> Harness<'static, App> {
 
 /// The same in a window of another size, points, at so many pixels a point.
 pub fn open_sized(example: &str, size: [f32; 2], scale: f32) -> Harness<'static, App> {
-    let example = scenes::find(example).unwrap();
-    let scene = SceneFile::parse(example.name, example.text, Path::new("../scenes")).unwrap();
-    start(
-        Start {
-            document: Document::new(scene),
-            library: shadewright_modules::library(),
-        },
-        size,
-        scale,
-    )
+    let scene = scenes::find(example).unwrap().scene().unwrap();
+    start(Start::with(scene), size, scale)
+}
+
+/// A scene that is drawn in no time.
+pub const SMALL: &str = r#"(
+    camera: (eye: (0.0, 1.0, 5.0), target: (0.0, 0.0, 0.0), fov: 30.0),
+    size: (64, 48), pass: "forward", display: "display",
+    post: [(module: "tonemap", fill: {"exposure": (module: "manual", params: {"ev100": 9.0})})],
+    meshes: {"ball": Sphere(radius: 1.0, segments: 24), "ground": Plane(size: (6.0, 6.0))},
+    materials: {
+        "shiny": {"material": (module: "metalness", params: {"base_color": (0.9, 0.2, 0.1), "roughness": 0.4}), "brdf": "microfacet"},
+        "matt": {"material": "metalness", "brdf": "lambert"},
+    },
+    lights: [
+        (name: "lamp", module: "point", fields: {"position": (2, 3, 2), "intensity": 1000.0, "color": "3000 K"}, visibility: "cube-map"),
+        (name: "sky", module: "directional", fields: {"direction": (0, -1, 0), "illuminance": 300.0}),
+    ],
+    objects: [(name: "ball", mesh: "ball", material: "shiny"), (name: "ground", mesh: "ground", material: "matt", translate: (0, -1, 0))],
+)"#;
+
+/// The small scene.
+pub fn small() -> SceneFile {
+    SceneFile::parse("small", SMALL, Path::new("")).unwrap().with_files(scenes::files())
+}
+
+/// The explorer with the small scene.
+pub fn open_small() -> Harness<'static, App> {
+    start(Start::with(small()), [1280.0, 800.0], 1.0)
 }
 
 /// The explorer as it starts.
@@ -67,8 +85,12 @@ pub fn settle(harness: &mut Harness<App>) {
 
 /// Clicks what has this name.
 pub fn click(harness: &mut Harness<App>, name: &str) {
-    let Some(node) = harness.query_by_label(name) else {
-        panic!("there is no {name:?}, but {:#?}", names(harness));
+    let found: Vec<_> = harness
+        .query_all_by_label(name)
+        .filter(|node| CLICKABLE.contains(&node.accesskit_node().role()))
+        .collect();
+    let [node] = found.as_slice() else {
+        panic!("there are {} {name:?}, and {:#?}", found.len(), names(harness));
     };
     node.click();
     harness.run_steps(3);
@@ -84,13 +106,37 @@ pub fn mean(harness: &Harness<App>) -> [f64; 3] {
     [0, 1, 2].map(|channel| sum(channel) / texels.len() as f64)
 }
 
+/// What can be clicked.
+pub const CLICKABLE: [Role; 3] = [Role::Button, Role::CheckBox, Role::RadioButton];
+
 /// The names of all that can be clicked.
 pub fn names(harness: &Harness<App>) -> Vec<String> {
-    let nodes = harness.get_all_by(|node| {
-        matches!(
-            node.role(),
-            Role::Button | Role::CheckBox | Role::Slider | Role::SpinButton | Role::TextInput
-        )
-    });
+    let nodes = harness.get_all_by(|node| CLICKABLE.contains(&node.role()));
     nodes.filter_map(|node| node.accesskit_node().label()).collect()
+}
+
+/// The text that stands at a path of the scene.
+pub fn said<'h>(harness: &'h Harness<App>, path: &str) -> Option<&'h str> {
+    harness.state().document.scene().get(path)
+}
+
+/// Selects a row by its path.
+pub fn select(harness: &mut Harness<App>, path: &str) {
+    harness.state_mut().selected = path.to_owned();
+    harness.run_steps(3);
+}
+
+/// Types a text into the field with this hint, in place of what is there.
+pub fn fill(harness: &mut Harness<App>, hint: &str, text: &str) {
+    field(harness, hint).focus();
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.run_steps(2);
+    field(harness, hint).type_text(text);
+    harness.run_steps(3);
+}
+
+/// The field with this hint.
+pub fn field<'h>(harness: &'h Harness<App>, hint: &'h str) -> Node<'h> {
+    harness.get_by(move |node| node.role() == Role::TextInput && node.data().placeholder() == Some(hint))
 }

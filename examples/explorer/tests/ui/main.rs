@@ -1,6 +1,12 @@
 //! The explorer, driven by the names of what is on its screen.
 
 mod alternatives;
+mod camera;
 mod choices;
 mod compare;
+mod files;
 mod harness;
+mod keyboard;
+mod modules;
+mod parameters;
+mod walk;

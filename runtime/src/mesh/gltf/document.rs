@@ -9,7 +9,7 @@ use gltf::json;
 use indexmap::IndexMap;
 use shadewright_compiler::manifest::Value;
 
-use super::{Alpha, Asset, Camera, GltfError, Light, MAX_NODES, Map, Material, Object, Perspective};
+use super::{Alpha, Asset, Camera, GltfError, Light, MAX_NODES, Map, Material, Object, Perspective, Read};
 use super::{damaged, extensions, files, geometry, unsupported};
 use crate::frame::{Mesh, Texture};
 use crate::image::decode_texture;
@@ -17,7 +17,7 @@ use crate::image::decode_texture;
 /// Extensions that are drawn as they say.
 const TAKEN: [&str; 2] = ["KHR_lights_punctual", "KHR_materials_emissive_strength"];
 
-pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Asset, GltfError> {
+pub(super) fn read(bytes: &[u8], folder: &Path, by: &mut Read) -> Result<Asset, GltfError> {
     // A header that says less than its own 12 bytes is more than the reader bears.
     if let Some(length) = bytes.strip_prefix(b"glTF").and_then(|b| b.get(4..8))
         && u32::from_le_bytes([length[0], length[1], length[2], length[3]]) < 12
@@ -43,10 +43,11 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Asset, GltfError> {
     root.extensions_required.retain(|e| !extensions::READ.contains(&e.as_str()));
     let document = gltf::Document::from_json(root).map_err(|e| damaged("the file", e))?;
 
-    let buffers = buffers(&document, blob, folder)?;
+    let buffers = buffers(&document, blob, folder, by)?;
     let mut reader = Reader {
         document: &document,
         folder,
+        by,
         buffers: &buffers,
         images: HashMap::new(),
         meshes: HashMap::new(),
@@ -105,14 +106,14 @@ fn check_alternatives(root: &json::Root) -> Result<(), GltfError> {
     Ok(())
 }
 
-fn buffers(document: &gltf::Document, blob: Option<Vec<u8>>, folder: &Path) -> Result<Vec<Vec<u8>>, GltfError> {
+fn buffers(document: &gltf::Document, blob: Option<Vec<u8>>, folder: &Path, by: &mut Read) -> Result<Vec<Vec<u8>>, GltfError> {
     let mut blob = blob;
     let mut all = Vec::new();
     for buffer in document.buffers() {
         let place = format!("buffers[{}]", buffer.index());
         let data = match buffer.source() {
             gltf::buffer::Source::Bin => blob.take().ok_or_else(|| damaged(place.clone(), "the file has no binary chunk"))?,
-            gltf::buffer::Source::Uri(uri) => files::resolve(uri, folder, &place)?,
+            gltf::buffer::Source::Uri(uri) => files::resolve(uri, folder, &place, by)?,
         };
         if data.len() < buffer.length() {
             return Err(damaged(
@@ -125,16 +126,17 @@ fn buffers(document: &gltf::Document, blob: Option<Vec<u8>>, folder: &Path) -> R
     Ok(all)
 }
 
-struct Reader<'a> {
+struct Reader<'a, 'r> {
     document: &'a gltf::Document,
     folder: &'a Path,
+    by: &'a mut Read<'r>,
     buffers: &'a [Vec<u8>],
     images: HashMap<usize, Arc<Texture>>,
     meshes: HashMap<(usize, usize), Arc<Mesh>>,
     asset: Asset,
 }
 
-impl Reader<'_> {
+impl Reader<'_, '_> {
     fn materials(&mut self) -> Result<(), GltfError> {
         for material in self.document.materials() {
             let index = material.index().unwrap_or_default();
@@ -229,7 +231,7 @@ impl Reader<'_> {
                 .and_then(|b| b.get(view.offset()..view.offset().checked_add(view.length())?))
                 .ok_or_else(|| damaged(place.clone(), "reaches past the end of its buffer"))?,
             gltf::image::Source::Uri { uri, .. } => {
-                from_file = files::resolve(uri, self.folder, &place)?;
+                from_file = files::resolve(uri, self.folder, &place, self.by)?;
                 &from_file
             }
         };

@@ -5,23 +5,18 @@ use std::path::{Path, PathBuf};
 
 use base64::Engine;
 
-use super::{GltfError, MAX_FILE, damaged, unsupported};
+use super::{GltfError, Read, damaged, unsupported};
 
-/// Reads a file within the limit.
-pub(super) fn read(path: &Path) -> Result<Vec<u8>, GltfError> {
-    let unreadable = |why: String| GltfError::Unreadable {
+/// Reads a file.
+pub(super) fn read(path: &Path, by: &mut Read) -> Result<Vec<u8>, GltfError> {
+    by(path).map_err(|why| GltfError::Unreadable {
         path: path.to_owned(),
         why,
-    };
-    let size = std::fs::metadata(path).map_err(|e| unreadable(e.to_string()))?.len();
-    if size > MAX_FILE {
-        return Err(unreadable(format!("{size} bytes, more than the limit of {MAX_FILE}")));
-    }
-    std::fs::read(path).map_err(|e| unreadable(e.to_string()))
+    })
 }
 
 /// The bytes behind a URI.
-pub(super) fn resolve(uri: &str, folder: &Path, place: &str) -> Result<Vec<u8>, GltfError> {
+pub(super) fn resolve(uri: &str, folder: &Path, place: &str, by: &mut Read) -> Result<Vec<u8>, GltfError> {
     if let Some(data) = uri.strip_prefix("data:") {
         let Some((head, body)) = data.split_once(',') else {
             return Err(damaged(place, "a data URI without a comma"));
@@ -42,7 +37,7 @@ pub(super) fn resolve(uri: &str, folder: &Path, place: &str) -> Result<Vec<u8>, 
             format!("the reference `{}`, which is not relative,", shortened(uri)),
         ));
     }
-    read(&folder.join(path))
+    read(&folder.join(path), by)
 }
 
 fn shortened(uri: &str) -> String {

@@ -19,6 +19,7 @@ use indexmap::IndexMap;
 use shadewright_compiler::manifest::Value;
 
 use super::MeshError;
+use crate::data::read_bytes;
 use crate::frame::{Mesh, Texture};
 
 /// Largest file that is read, bytes.
@@ -175,22 +176,37 @@ impl Asset {
     }
 }
 
-/// Reads a file and what it refers to.
+/// Gives the bytes of a file, or says why it cannot.
+pub type Read<'r> = dyn FnMut(&Path) -> Result<Vec<u8>, String> + 'r;
+
+/// Reads a file and what it refers to from disk.
 ///
 /// # Errors
 /// A file cannot be read, is damaged, or uses something that is not taken.
 pub fn load(path: &Path) -> Result<Asset, GltfError> {
-    let bytes = files::read(path)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    parse(&bytes, folder)
+    load_with(path, &mut on_disk)
 }
 
-/// Reads a file from memory; relative references start at `folder`.
+/// Reads a file and what it refers to, wherever they are: `by` is asked for each by its path, which begins as `path` does.
+///
+/// # Errors
+/// As for [`load`].
+pub fn load_with(path: &Path, by: &mut Read) -> Result<Asset, GltfError> {
+    let bytes = files::read(path, by)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    document::read(&bytes, folder, by)
+}
+
+/// Reads a file from memory; relative references start at `folder`, on disk.
 ///
 /// # Errors
 /// As for [`load`].
 pub fn parse(bytes: &[u8], folder: &Path) -> Result<Asset, GltfError> {
-    document::read(bytes, folder)
+    document::read(bytes, folder, &mut on_disk)
+}
+
+fn on_disk(path: &Path) -> Result<Vec<u8>, String> {
+    read_bytes(path, MAX_FILE)
 }
 
 fn damaged(place: impl Into<String>, why: impl ToString) -> GltfError {

@@ -7,7 +7,7 @@ use shadewright_compiler::manifest::Value;
 use super::*;
 
 /// Two triangles with normals and texture coordinates, 4 vertices, u16 indices, and a 2 x 1 PNG.
-fn blob() -> Vec<u8> {
+pub(crate) fn blob() -> Vec<u8> {
     let mut bytes = Vec::new();
     for p in [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]] {
         bytes.extend(p.iter().flat_map(|x| x.to_le_bytes()));

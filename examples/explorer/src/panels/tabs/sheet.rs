@@ -90,8 +90,10 @@ fn files(app: &mut App, ui: &mut egui::Ui, sweep: Option<&SweepView>) {
             ui.data_mut(|data| data.remove_temp::<String>(typed));
         }
         ui.separator();
-        let label = ui.label("File");
-        let field = TextEdit::singleline(&mut app.compare.sheet_path).desired_width(160.0);
+        let label = ui.label("Write to");
+        let field = TextEdit::singleline(&mut app.compare.sheet_path)
+            .hint_text("sheet.png")
+            .desired_width(160.0);
         ui.add(field).labelled_by(label.id);
         let is_done = sweep.is_some_and(|sweep| sweep.alternatives.len() == sweep.of);
         let can = is_done && !app.compare.sheet_path.is_empty();
@@ -108,7 +110,7 @@ fn files(app: &mut App, ui: &mut egui::Ui, sweep: Option<&SweepView>) {
             app.lanes.desk.ask(WriteSheet {
                 tiles: tiles.collect(),
                 size: sweep.size,
-                path: app.compare.sheet_path.clone().into(),
+                path: app.compare.sheet_path.clone(),
             });
         }
     });

@@ -17,7 +17,6 @@ pub struct Camera {
 
 /// A scene's camera, written.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename = "")]
 pub struct Decl {
     /// m
     pub eye: (f32, f32, f32),

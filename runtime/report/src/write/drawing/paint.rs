@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use image::{ImageFormat, RgbImage, imageops};
 use plotters::prelude::{BitMapBackend, Circle, DrawingArea, DrawingBackend, IntoDrawingArea, PathElement, SVGBackend, ShapeStyle, Text};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontFamily, FontStyle, FontTransform, IntoFont, RGBColor, TextStyle};
+use plotters::style::{FontFamily, FontTransform, IntoFont, RGBColor, TextStyle};
 use plotters::{coord::Shift, drawing::DrawingAreaErrorKind};
 
 use super::colour::Colour;
@@ -27,15 +27,17 @@ const DROP: f64 = 0.13;
 /// Makes the font known, which glyphs and widths come from. The same each time.
 ///
 /// # Errors
-/// The font is no font.
+/// The font is no font; or this is a web page, where plotters takes no font of ours.
 pub fn register_font() -> Result<(), WriteError> {
-    let wrong = |_| WriteError::Draw("the font cannot be read".to_owned());
-    plotters::style::register_font(
+    #[cfg(not(target_arch = "wasm32"))]
+    let registered = plotters::style::register_font(
         FontFamily::SansSerif.as_str(),
-        FontStyle::Normal,
+        plotters::style::FontStyle::Normal,
         epaint_default_fonts::UBUNTU_LIGHT,
-    )
-    .map_err(wrong)
+    );
+    #[cfg(target_arch = "wasm32")]
+    let registered = Err::<(), ()>(());
+    registered.map_err(|_| WriteError::Draw("the font cannot be read".to_owned()))
 }
 
 /// Width of a text in pixels, with room for another font than ours.

@@ -1,0 +1,160 @@
+//! What the application does with files.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use eframe::egui;
+use web_time::Instant;
+
+use super::App;
+use crate::files::{Answer, Dialog, Export, Keep, Kept, Modules, Purpose, Reload, save};
+
+/// What has changed is kept this long after it: not for every step of a slider.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+impl App {
+    /// Asks for a path.
+    pub fn ask_path(&mut self, purpose: Purpose) {
+        let name = Path::new(&self.document.state().name).to_owned();
+        let stem = name.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let stem = stem.trim_end_matches(".scene.ron");
+        let folder = name.parent().filter(|folder| !folder.as_os_str().is_empty()).map(Path::to_owned);
+        let here = || std::env::current_dir().unwrap_or_default();
+        let folder = folder.unwrap_or_else(here);
+        let path = match purpose {
+            Purpose::Open | Purpose::Modules => format!("{}/", folder.display()),
+            purpose => folder.join(format!("{stem}{}", purpose.extension())).display().to_string(),
+        };
+        self.dialog = Some(Dialog::new(purpose, path));
+    }
+
+    /// Saves the scene where it is from; asks where that is nowhere.
+    pub fn save(&mut self) {
+        let name = self.document.state().name.clone();
+        if Path::new(&name).is_file() {
+            self.save_as(&name);
+        } else {
+            self.ask_path(Purpose::SaveAs);
+        }
+    }
+
+    fn save_as(&mut self, path: &str) {
+        // What is switched off is no part of the scene's file, and stays in the explorer.
+        match save(path, self.document.state().text.as_bytes()) {
+            Ok(at) => {
+                self.message = format!("saved {at}");
+                let path = Path::new(path);
+                self.document
+                    .saved(path.display().to_string(), path.parent().unwrap_or(Path::new("")).to_owned());
+                self.kept.remember(path);
+                // Relative files are found from another folder now.
+                self.seen = None;
+            }
+            Err(why) => self.message = why,
+        }
+    }
+
+    /// Has modules come from a folder before the standard library, or from the latter alone.
+    pub fn use_modules(&mut self, folder: Option<PathBuf>) {
+        let Some(folder) = folder else {
+            self.modules = None;
+            self.kept.modules = None;
+            self.lanes.desk.ask(Reload::Other(shadewright_modules::library()));
+            return;
+        };
+        if self.watch(&folder) {
+            self.lanes.desk.ask(Reload::Other(Modules::library(&folder)));
+            self.kept.modules = Some(folder);
+        }
+    }
+
+    /// Watches a folder of modules; whether that can be.
+    pub(super) fn watch(&mut self, folder: &Path) -> bool {
+        let context = self.context.clone();
+        match Modules::watch(folder, move || context.request_repaint()) {
+            Ok(modules) => self.modules = Some(modules),
+            Err(why) => {
+                self.message = why;
+                return false;
+            }
+        }
+        true
+    }
+
+    /// What files ask for in every frame: the dialog, what is dropped, what has changed, what is to be kept.
+    pub(super) fn mind_files(&mut self, context: &egui::Context) {
+        let dropped = context.input(|input| input.raw.dropped_files.clone());
+        for file in dropped {
+            self.open_file(file.path().to_owned());
+        }
+        if self.modules.as_ref().is_some_and(Modules::take_change) {
+            self.lanes.desk.ask(Reload::Again(self.catalog.clone()));
+        }
+        self.keep();
+    }
+
+    /// Shows the dialog and does what was asked for.
+    pub(crate) fn show_dialog(&mut self, context: &egui::Context) {
+        let Some(mut dialog) = self.dialog.take() else { return };
+        match dialog.show(context) {
+            Answer::Open => self.dialog = Some(dialog),
+            Answer::Cancelled => {}
+            Answer::Chosen(path) => self.chosen(dialog.purpose, path),
+        }
+    }
+
+    fn chosen(&mut self, purpose: Purpose, path: String) {
+        match purpose {
+            Purpose::Open => self.open_file(path.into()),
+            Purpose::Modules => self.use_modules(Some(path.into())),
+            Purpose::SaveAs => self.save_as(&path),
+            Purpose::Png | Purpose::Exr | Purpose::Wgsl | Purpose::Recipe => {
+                let size = self.document.scene().scene().size;
+                self.lanes.long.ask(Export {
+                    shot: self.shot(),
+                    purpose,
+                    recipe: self.selected_recipe(),
+                    size,
+                    path,
+                });
+            }
+        }
+    }
+
+    /// What a crash must not take.
+    fn keep(&mut self) {
+        let Some(path) = self.state_file.clone() else { return };
+        let now = self.to_keep(self.viewport.painted.is_none() && self.problems.is_empty());
+        let (last, since) = &mut self.keeping;
+        if now == *last {
+            return;
+        }
+        // That it is starting is known to whoever starts next even if this ends at once.
+        let waited = since.get_or_insert_with(Instant::now).elapsed();
+        if waited < PATIENCE && now.starting == last.starting {
+            self.context.request_repaint_after(PATIENCE);
+            return;
+        }
+        self.keeping = (now.clone(), None);
+        self.lanes.desk.ask(Keep { path, kept: now });
+    }
+
+    /// Keeps what has changed, at once: the window closes.
+    pub(super) fn keep_now(&mut self) {
+        let Some(path) = self.state_file.clone() else { return };
+        if let Err(why) = self.to_keep(false).write(&path) {
+            log::error!("{why}");
+        }
+    }
+
+    fn to_keep(&self, starting: bool) -> Kept {
+        Kept {
+            state: Some(self.document.state().clone()),
+            saved: self.document.saved_text().clone(),
+            selected: self.selected.clone(),
+            tab: self.tabs.shown,
+            starting,
+            ..self.kept.clone()
+        }
+    }
+}

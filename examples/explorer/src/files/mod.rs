@@ -1,0 +1,15 @@
+//! Files: scenes opened and saved, pictures exported, modules watched, and the state that is kept from one start to the next.
+
+mod dialog;
+mod drop;
+mod export;
+mod keep;
+mod modules;
+mod save;
+
+pub use dialog::{Answer, Dialog, Purpose};
+pub use drop::{Found, Look};
+pub use export::Export;
+pub use keep::{Keep, Kept, state_file};
+pub use modules::{Modules, Reload};
+pub use save::save;
