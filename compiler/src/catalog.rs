@@ -98,6 +98,11 @@ impl Catalog {
         Ok(catalog)
     }
 
+    /// The library that it was loaded from.
+    pub fn library(&self) -> &Arc<dyn Library> {
+        &self.library
+    }
+
     /// Categories in the order in which lists show them.
     pub fn categories(&self) -> impl Iterator<Item = &Arc<Category>> {
         self.categories.values()

@@ -1,5 +1,6 @@
 //! The application: a document, the lanes that work for it, and what is on the screen.
 
+mod compare;
 mod files;
 mod news;
 
@@ -16,6 +17,7 @@ use shadewright_runtime::scene::{Scene, SceneFile};
 
 use web_time::Instant;
 
+use crate::compare::Compare;
 use crate::document::{Document, Draft, step_path};
 use crate::files::{Dialog, Kept, Modules};
 use crate::panels::{self, Tabs, TreeState, Viewport};
@@ -93,6 +95,8 @@ pub struct App {
     pub tree: TreeState,
     /// What the tabs remember.
     pub tabs: Tabs,
+    /// What is compared with what.
+    pub compare: Compare,
     /// The dialog that is open.
     pub dialog: Option<Dialog>,
     /// What is kept for the next start.
@@ -136,6 +140,7 @@ impl App {
             message: String::new(),
             viewport: Viewport::default(),
             tree: TreeState::default(),
+            compare: Compare::default(),
             tabs: Tabs {
                 shown: start.kept.tab,
                 ..Tabs::default()
@@ -207,6 +212,7 @@ impl App {
         self.document = Document::new(scene);
         self.seen = None;
         self.viewport.forget();
+        self.compare.forget(&self.render_state);
     }
 
     /// Links from another library, or the same one after an edit.

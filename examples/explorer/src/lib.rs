@@ -8,6 +8,7 @@
 //! - [`document`]: the scene's text, changed by edits that can be undone. The text is all there is: what is saved, sent and kept over a crash.
 //! - [`tree`]: the modules that stand in the scene, and what else could stand in their places.
 //! - [`work`]: whatever takes longer than a frame of the window, done beside it.
+//! - [`compare`]: what is true, and how far from it a picture is.
 //! - [`files`]: scenes, pictures, modules and what is kept between two starts.
 //! - [`panels`]: what is on the screen.
 //! - [`App`]: all of it together.
@@ -15,6 +16,7 @@
 #![forbid(unsafe_code)]
 
 mod app;
+pub mod compare;
 pub mod document;
 pub mod files;
 pub mod panels;

@@ -5,7 +5,7 @@
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value as Json;
-pub use shadewright_evaluate::cost::Cost;
+pub use shadewright_evaluate::cost::{Cost, cost_of};
 
 /// A number that is `null` where it was not finite.
 fn or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {

@@ -49,6 +49,7 @@ impl App {
             }
             News::Inspected(inspected) => self.tabs.inspect.take(*inspected),
             News::Concerned(concerned) => self.tabs.problems.concerned = concerned,
+            News::Compare(told) => self.take_comparison(told),
         }
     }
 
@@ -64,6 +65,7 @@ impl App {
             self.tabs.timing.measured = None;
         }
         self.ask_places();
+        self.ask_to_compare();
     }
 
     /// Asks which rows the problems are about, where they are others than before.

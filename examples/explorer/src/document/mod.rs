@@ -181,6 +181,20 @@ impl Document {
         Ok(())
     }
 
+    /// Puts another text there with what is switched off in it, as one step. Name and folder stay.
+    ///
+    /// # Errors
+    /// The text is no scene.
+    pub fn replace(&mut self, what: &str, state: &State) -> Result<(), Report> {
+        let files = self.scene.files().clone();
+        let scene = SceneFile::parse(&self.state.name, &state.text, &self.state.folder)?.with_files(files);
+        let parked = state.parked.clone();
+        self.edit(what, |draft| {
+            *draft = Draft { scene, parked };
+            Ok(())
+        })
+    }
+
     /// The next edit is a step of its own.
     pub fn close(&mut self) {
         self.open = false;

@@ -1,6 +1,7 @@
 //! What is on the screen.
 
 mod bar;
+mod compare;
 mod keys;
 mod parameters;
 mod tabs;
@@ -37,7 +38,8 @@ pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
         .default_size(290.0)
         .min_size(180.0)
         .show(ui, |ui| parameters::show(app, ui));
-    egui::CentralPanel::default()
-        .frame(egui::Frame::NONE)
-        .show(ui, |ui| viewport::show(app, ui));
+    egui::CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| {
+        compare::bar(app, ui);
+        viewport::show(app, ui);
+    });
 }

@@ -62,6 +62,11 @@ impl Viewport {
         Some(size)
     }
 
+    /// Width and height of the place on the screen in pixels, where there is one that can be drawn into.
+    pub fn full_size(&self) -> Option<[u32; 2]> {
+        Some(self.pixels).filter(|pixels| pixels.iter().all(|side| *side >= SMALLEST))
+    }
+
     /// Shows a picture.
     pub fn show(&mut self, render: &RenderState, painted: Painted) {
         let Some(display) = &painted.targets.display else {
@@ -112,6 +117,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
         );
     }
     steer(app, ui, &response, rect);
+    super::compare::overlay(app, ui, rect);
 }
 
 /// The camera by mouse and wheel; a click selects what is there.

@@ -5,6 +5,7 @@
 //! somebody turns a knob.
 
 mod bench;
+mod beside;
 mod inspect;
 mod lane;
 mod legal;
@@ -12,8 +13,12 @@ mod listing;
 mod measure;
 mod paint;
 mod places;
+mod reference;
+mod sheet;
+mod sweep;
 #[cfg(test)]
 mod tests;
+mod thumbnail;
 
 use std::sync::Arc;
 
@@ -23,6 +28,7 @@ use shadewright_runtime::scene::SceneFile;
 use crate::files::Found;
 
 pub use bench::Bench;
+pub use beside::{DrawBeside, LoadTruths, PaintHeat, values};
 pub use inspect::{Inspect, Inspected, Language, Made, View, inspect};
 pub use lane::{Job, Lane, Progress, Step};
 pub use legal::{Legal, Try, Verdict, links, reason};
@@ -30,6 +36,10 @@ pub use listing::{Line, Listing};
 pub use measure::Measure;
 pub use paint::{Paint, Painted, Times, paint, wrong};
 pub use places::{Concerned, Places};
+pub use reference::Refine;
+pub use sheet::WriteSheet;
+pub use sweep::{Alternative, Change, MOST, Measured, Sweep};
+pub use thumbnail::{DrawThumbnail, picture};
 
 /// A scene at one moment, with the library that it is linked from.
 #[derive(Clone)]
@@ -67,6 +77,8 @@ pub enum News {
     Inspected(Box<Inspected>),
     /// Which rows of the tree problems concern.
     Concerned(Concerned),
+    /// Of comparing.
+    Compare(crate::compare::Told),
     /// What a file holds.
     Found(Found),
     /// A library that was read, or what is wrong with it.

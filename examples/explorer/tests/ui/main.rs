@@ -1,7 +1,9 @@
 //! The explorer, driven by the names of what is on its screen.
 
+mod alternatives;
 mod camera;
 mod choices;
+mod compare;
 mod files;
 mod harness;
 mod keyboard;

@@ -2,8 +2,8 @@
 
 use super::number::{count, number};
 
-/// An error of this share has the full colour.
-const FULL: f64 = 0.5;
+/// An error of this share has the full colour, where nothing else is said.
+pub const FULL: f64 = 0.5;
 /// Where a picture has no number.
 const BROKEN: [u8; 4] = [255, 0, 255, 255];
 /// Luminance of linear Rec.709 (ITU-R BT.709, 3.2).
@@ -24,6 +24,19 @@ pub struct Difference {
 }
 
 impl Difference {
+    /// Of the [`errors`] of a picture, with the full colour at this one.
+    pub fn of(errors: &[f64], full: f64) -> Self {
+        let finite = || errors.iter().filter(|error| error.is_finite());
+        let squares = finite().map(|error| error.powi(2)).sum::<f64>();
+        let count = finite().count();
+        Self {
+            pixels: errors.iter().flat_map(|error| colour(*error, full)).collect(),
+            rms: (squares / count.max(1) as f64).sqrt(),
+            largest: finite().map(|error| error.abs()).fold(0.0, f64::max),
+            broken: errors.len() - count,
+        }
+    }
+
     /// The numbers in words: `RMS 1.2 %, largest 30 %`.
     pub fn summary(&self) -> String {
         let mut text = format!("RMS {} %, largest {} %", number(100.0 * self.rms), number(100.0 * self.largest));
@@ -36,33 +49,41 @@ impl Difference {
 
 /// Compares two linear pictures of one size.
 pub fn difference(found: &[[f32; 4]], truth: &[[f32; 4]]) -> Difference {
-    let luminance = |texel: &[f32; 4]| (0..3).map(|c| LUMINANCE[c] * f64::from(texel[c])).sum::<f64>();
+    Difference::of(&errors(found, truth), FULL)
+}
+
+/// Luminance of linear Rec.709, in the unit of its channels.
+pub fn luminance(texel: &[f32; 4]) -> f64 {
+    (0..3).map(|c| LUMINANCE[c] * f64::from(texel[c])).sum()
+}
+
+/// The error of each pixel, on [`Difference`]'s scale: above 0 where `found` is too bright. NaN where either picture has no finite number.
+pub fn errors(found: &[[f32; 4]], truth: &[[f32; 4]]) -> Vec<f64> {
     let pairs: Vec<[f64; 2]> = found.iter().zip(truth).map(|(a, b)| [luminance(a), luminance(b)]).collect();
-    let finite = || pairs.iter().filter(|[a, b]| a.is_finite() && b.is_finite());
+    let is_finite = |[a, b]: &[f64; 2]| a.is_finite() && b.is_finite();
+    let finite = || pairs.iter().filter(|pair| is_finite(pair));
     let count = finite().count().max(1) as f64;
     let mean = finite().map(|[_, b]| b).sum::<f64>() / count;
     // A picture that is black everywhere has no scale of its own: errors are in its unit then.
     let scale = if mean > 0.0 { mean } else { 1.0 };
-    let error = |[a, b]: [f64; 2]| (a - b) / (b.max(0.0) + scale);
-    let squares = finite().map(|pair| error(*pair).powi(2)).sum::<f64>();
-    let pixel = |pair: &[f64; 2]| {
-        let error = error(*pair);
-        if !error.is_finite() {
-            return BROKEN;
-        }
-        let height = (255.0 * (error.abs() / FULL).min(1.0)).round() as u8;
-        let pale = height / 3;
-        if error > 0.0 {
-            [height, pale, pale, 255]
-        } else {
-            [pale, pale, height, 255]
-        }
-    };
-    Difference {
-        pixels: pairs.iter().flat_map(pixel).collect(),
-        rms: (squares / count).sqrt(),
-        largest: finite().map(|pair| error(*pair).abs()).fold(0.0, f64::max),
-        broken: pairs.len() - finite().count(),
+    let error = |[a, b]: &[f64; 2]| (a - b) / (b.max(0.0) + scale);
+    pairs
+        .iter()
+        .map(|pair| if is_finite(pair) { error(pair) } else { f64::NAN })
+        .collect()
+}
+
+/// The colour of an error, sRGB-encoded RGBA: full where it is `full` or more, either way.
+pub fn colour(error: f64, full: f64) -> [u8; 4] {
+    if !error.is_finite() {
+        return BROKEN;
+    }
+    let height = (255.0 * (error.abs() / full).min(1.0)).round() as u8;
+    let pale = height / 3;
+    if error > 0.0 {
+        [height, pale, pale, 255]
+    } else {
+        [pale, pale, height, 255]
     }
 }
 

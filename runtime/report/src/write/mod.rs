@@ -15,7 +15,7 @@ mod drawing;
 mod page;
 mod tables;
 
-pub use difference::{Difference, difference};
+pub use difference::{Difference, FULL, colour, difference, errors, luminance};
 pub use drawing::pareto::dominated;
 pub use faults::{Fault, Kind, faults};
 pub use markdown::markdown;

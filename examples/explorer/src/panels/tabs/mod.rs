@@ -4,7 +4,11 @@ mod bindings;
 mod code;
 mod graph;
 mod inspect;
+mod pareto;
+mod pins;
 mod problems;
+mod reference;
+mod sheet;
 mod timing;
 
 use eframe::egui;
@@ -33,11 +37,29 @@ pub enum Tab {
     Timing,
     /// What is wrong, with the line of the source.
     Problems,
+    /// Permutations that are kept.
+    Pins,
+    /// The scene's truth, and what stands in it for what.
+    Reference,
+    /// Error against cost of what could stand in a slot.
+    Pareto,
+    /// Pictures of what could stand in a slot.
+    Sheet,
 }
 
 impl Tab {
     /// All of them, in their order.
-    pub const ALL: [Self; 5] = [Self::Code, Self::Bindings, Self::Graph, Self::Timing, Self::Problems];
+    pub const ALL: [Self; 9] = [
+        Self::Code,
+        Self::Bindings,
+        Self::Graph,
+        Self::Timing,
+        Self::Pareto,
+        Self::Sheet,
+        Self::Pins,
+        Self::Reference,
+        Self::Problems,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -47,6 +69,10 @@ impl Tab {
             Self::Graph => "Graph",
             Self::Timing => "Timing",
             Self::Problems => "Problems",
+            Self::Pins => "Pins",
+            Self::Reference => "Reference",
+            Self::Pareto => "Pareto",
+            Self::Sheet => "Sheet",
         }
     }
 }
@@ -68,6 +94,8 @@ pub struct Tabs {
     pub timing: TimingState,
     /// Of the problems.
     pub problems: ProblemsState,
+    /// What the plot of alternatives has across.
+    pub cost: pareto::Cost,
 }
 
 /// Shows the tabs.
@@ -90,5 +118,11 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
         Tab::Graph => graph::show(app, ui),
         Tab::Timing => timing::show(app, ui),
         Tab::Problems => problems::show(app, ui),
+        Tab::Pins => pins::show(app, ui),
+        Tab::Reference => reference::show(app, ui),
+        Tab::Pareto => pareto::show(app, ui),
+        Tab::Sheet => sheet::show(app, ui),
     }
+    // The panel keeps its height, however little there is to show.
+    ui.take_available_space();
 }
