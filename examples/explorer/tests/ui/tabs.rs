@@ -72,6 +72,8 @@ fn code_is_that_of_the_selection() {
     assert_ne!(made(&explorer, |made| made.listing.as_ref().unwrap().text.clone()), main);
     click(&mut explorer, "Pass");
     click(&mut explorer, "Pass: main");
+    // The choices move with the width of their names.
+    settle(&mut explorer);
     for language in Language::ALL {
         click(&mut explorer, "Language");
         click(&mut explorer, &format!("Language: {}", language.name()));
