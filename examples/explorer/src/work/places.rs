@@ -93,7 +93,6 @@ impl Places {
 
 /// Path of the row that holds a path of the scene, the innermost one.
 fn nearest(rows: &[Row], path: &str) -> Option<String> {
-    let path = plain(path);
     let holds = |row: &&Row| {
         let rest = path.strip_prefix(&plain(&row.path));
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
