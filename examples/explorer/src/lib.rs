@@ -9,6 +9,7 @@
 //! - [`tree`]: the modules that stand in the scene, and what else could stand in their places.
 //! - [`work`]: whatever takes longer than a frame of the window, done beside it.
 //! - [`files`]: scenes, pictures, modules and what is kept between two starts.
+//! - [`link`]: a scene as the address of a page.
 //! - [`panels`]: what is on the screen.
 //! - [`App`]: all of it together.
 
@@ -17,8 +18,11 @@
 mod app;
 pub mod document;
 pub mod files;
+pub mod link;
 pub mod panels;
 pub mod scenes;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod serve;
 mod setup;
 pub mod tree;
 pub mod work;

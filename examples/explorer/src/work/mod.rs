@@ -7,6 +7,7 @@
 mod bench;
 mod lane;
 mod legal;
+mod pace;
 mod paint;
 #[cfg(test)]
 mod tests;
