@@ -5,14 +5,16 @@ use std::sync::{Arc, OnceLock};
 use crate::catalog::{Catalog, Module};
 use crate::diagnostics::{Diagnostic, Report, SourceFile, codes};
 use crate::hash::structural_hash;
-use crate::link::{link, write_source};
+use crate::link::{link, write_source, write_traced};
 use crate::manifest::{Node, PassDecl, parse_recipe};
+use crate::origins;
 use crate::plan::{Plan, Roots, plan, roomy};
 use crate::reflect::{Reflection, reflect};
 use crate::resolve::{Instances, Place, Tree, resolve, resolve_root};
 use crate::validate::{Validated, located, validate};
 use crate::why;
 
+pub use crate::origins::{ItemOrigin, LineOrigin};
 pub use crate::why::Why;
 
 /// One pass of a recipe, linked.
@@ -53,6 +55,16 @@ impl Program {
     /// Why a function, binding, parameter, override, struct or constant is there; empty if it is not.
     pub fn why(&self, name: &str) -> Vec<Why> {
         why::why(&self.plan, self.reflection(), self.wgsl(), name)
+    }
+
+    /// Where the lines of the source form come from, one for each line: `None` for lines between items. Written anew with every call.
+    pub fn origins(&self) -> Vec<Option<LineOrigin>> {
+        let found = roomy(self.plan.deep, || {
+            let (text, sections) = write_traced(&self.plan);
+            origins::origins(&self.plan, &text, &sections)
+        });
+        // Without a thread for a plan that wants a large stack nothing is known.
+        found.unwrap_or_default()
     }
 
     /// The tree, and the node in it that an instance stands for first.

@@ -5,8 +5,11 @@ mod combine;
 mod edits;
 mod ir;
 mod source;
+mod splice;
+mod trace;
 mod trim;
 mod types;
 
 pub use ir::link;
-pub use source::write_source;
+pub use source::{write_source, write_traced};
+pub use trace::Section;

@@ -6,6 +6,8 @@ use std::fmt::Write as _;
 use std::ops::Range;
 
 use super::edits::dead_text;
+use super::splice::{Edit, Stretch, apply};
+use super::trace::{Section, Trace};
 use crate::manifest::Combine;
 use crate::parse::scan::{Item, ItemKind};
 use crate::parse::{Meaning, Origin, Unit, joined, typed_wgsl, wgsl_type, whole_lines};
@@ -13,6 +15,16 @@ use crate::plan::{Body, GROUPS, Plan, Planned};
 
 /// Writes the source form.
 pub fn write_source(plan: &Plan) -> String {
+    write(plan, None).0
+}
+
+/// Writes the source form and says where each part of it comes from, in its order.
+pub fn write_traced(plan: &Plan) -> (String, Vec<Section>) {
+    let (text, trace) = write(plan, Some(Trace::default()));
+    (text, trace.unwrap_or_default().sections)
+}
+
+fn write(plan: &Plan, trace: Option<Trace>) -> (String, Option<Trace>) {
     let mut params: Vec<Vec<String>> = plan.homes.iter().map(|_| Vec::new()).collect();
     for block in &plan.blocks {
         let group = GROUPS[block.group as usize];
@@ -33,12 +45,11 @@ pub fn write_source(plan: &Plan) -> String {
         params,
         edits: Vec::new(),
         dead: Vec::new(),
+        stretches: Vec::new(),
+        trace,
     };
     writer.write()
 }
-
-/// A stretch of text and what stands there instead.
-type Edit<'p> = (Range<usize>, Cow<'p, str>);
 
 /// How many items the linker itself adds to a unit: its constants and overrides, `Instance` and `instances`.
 fn added(unit: &Unit) -> usize {
@@ -63,15 +74,30 @@ struct Writer<'p> {
     /// Of the item that is being written.
     edits: Vec<Edit<'p>>,
     dead: Vec<Range<usize>>,
+    /// The author's text in what was written last.
+    stretches: Vec<Stretch>,
+    /// Where all of it comes from, if somebody wants to know.
+    trace: Option<Trace>,
 }
 
 impl<'p> Writer<'p> {
-    fn write(mut self) -> String {
+    fn write(mut self) -> (String, Option<Trace>) {
         let plan = self.plan;
         let mut functions = String::with_capacity(1 << 15);
         for planned in &plan.functions {
             functions.push('\n');
+            let start = functions.len();
+            self.stretches.clear();
             self.function(planned, &mut functions);
+            if let Some(trace) = &mut self.trace {
+                trace.functions.push(Section {
+                    text: start..functions.len(),
+                    home: planned.home,
+                    name: planned.name.clone(),
+                    param: None,
+                    stretches: self.stretches.clone(),
+                });
+            }
         }
         for global in &plan.globals {
             let unit = &plan.homes[global.home].unit;
@@ -80,7 +106,11 @@ impl<'p> Writer<'p> {
             }
         }
         while let Some((home, index)) = self.queue.pop() {
+            self.stretches.clear();
             if let Some((kind, text)) = self.item(home, index) {
+                if let Some(trace) = &mut self.trace {
+                    trace.items.insert((home, index), self.stretches.clone());
+                }
                 self.items[home][index] = Wanted::Written(kind, text);
             }
         }
@@ -93,11 +123,14 @@ impl<'p> Writer<'p> {
         ] {
             let interfaces = (0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_none());
             for home in interfaces.chain((0..plan.homes.len()).filter(|&h| plan.homes[h].instance.is_some())) {
-                for item in &self.items[home] {
+                for (index, item) in self.items[home].iter().enumerate() {
                     if let Wanted::Written(kind, text) = item
                         && kinds.contains(kind)
                     {
                         gap(&mut out, *kind);
+                        if let Some(trace) = &mut self.trace {
+                            trace.item(plan, (home, index), out.len(), text.len());
+                        }
                         out.push_str(text);
                     }
                 }
@@ -106,10 +139,14 @@ impl<'p> Writer<'p> {
                 self.blocks(&mut out);
             }
         }
+        let start = out.len();
         out.push_str(&functions);
         let blank = out.len() - out.trim_start().len();
         out.drain(..blank);
-        out
+        if let Some(trace) = &mut self.trace {
+            trace.finish(start, blank);
+        }
+        (out, self.trace)
     }
 
     fn want(&mut self, home: usize, index: usize) {
@@ -144,7 +181,7 @@ impl<'p> Writer<'p> {
         lines.into_iter().flat_map(|line| [line, "\n"]).collect()
     }
 
-    fn blocks(&self, out: &mut String) {
+    fn blocks(&mut self, out: &mut String) {
         for block in &self.plan.blocks {
             let group = GROUPS[block.group as usize];
             // Infallible: writing to a string.
@@ -152,6 +189,7 @@ impl<'p> Writer<'p> {
             for member in &block.members {
                 let declared = self.plan.homes[member.home].unit.needs.uniforms.get(&member.param);
                 let Some(param) = declared else { continue };
+                let start = out.len();
                 if !param.doc.is_empty() {
                     let _ = write!(out, "    /// {}", param.doc.replace('\n', " "));
                     if !param.unit.is_empty() && param.unit != "1" {
@@ -160,6 +198,9 @@ impl<'p> Writer<'p> {
                     out.push('\n');
                 }
                 let _ = writeln!(out, "    {}: {},", member.name, wgsl_type(param.ty));
+                if let Some(trace) = &mut self.trace {
+                    trace.param(self.plan, member.home, &member.param, start..out.len());
+                }
             }
             out.push_str("}\n");
         }
@@ -220,7 +261,13 @@ impl<'p> Writer<'p> {
             self.edits.push((item.span.start..item.span.start, binding.into()));
         }
         let mut text = String::new();
-        apply(&unit.file.text, item.doc_start..item.span.end, &mut self.edits, &mut text);
+        apply(
+            &unit.file.text,
+            item.doc_start..item.span.end,
+            &mut self.edits,
+            &mut self.stretches,
+            &mut text,
+        );
         text.push('\n');
         Some((item.kind, text))
     }
@@ -286,7 +333,13 @@ impl<'p> Writer<'p> {
                 let _ = writeln!(out, "@{directive}");
             }
         }
-        apply(&unit.file.text, item.doc_start..item.span.end, &mut self.edits, out);
+        apply(
+            &unit.file.text,
+            item.doc_start..item.span.end,
+            &mut self.edits,
+            &mut self.stretches,
+            out,
+        );
         out.push('\n');
     }
 
@@ -401,21 +454,4 @@ fn gap(out: &mut String, kind: ItemKind) {
     if !flat || out.ends_with("}\n") {
         out.push('\n');
     }
-}
-
-/// Writes the text of a range with the edits made. Edits inside a removed stretch go with it.
-fn apply(text: &str, range: Range<usize>, edits: &mut [Edit], out: &mut String) {
-    edits.sort_by_key(|(a, _)| (a.start, std::cmp::Reverse(a.end)));
-    let mut at = range.start;
-    for (span, new) in edits {
-        if span.start < at || span.end > range.end {
-            // An edit that begins in a removed stretch may still reach beyond it.
-            at = at.max(span.end.min(range.end).max(at));
-            continue;
-        }
-        out.push_str(&text[at..span.start]);
-        out.push_str(new);
-        at = span.end;
-    }
-    out.push_str(&text[at..range.end]);
 }

@@ -134,7 +134,7 @@ impl App {
             render_state,
             version: 0,
             rows: Vec::new(),
-            selected: "materials".to_owned(),
+            selected: String::new(),
             problems: Vec::new(),
             message: String::new(),
             viewport: Viewport::default(),
@@ -237,6 +237,12 @@ impl App {
         self.seen = Some(now);
         self.version += 1;
         self.rows = rows(self.document.scene(), &self.catalog, &self.document.state().parked);
+        if self.selected.is_empty() {
+            // The first thing that has more than a name.
+            let rich = |row: &&Row| row.is_choice() && row.module.as_ref().is_some_and(|module| !module.manifest.slots.is_empty());
+            let first = self.rows.iter().filter(|row| row.path.starts_with("materials")).find(rich);
+            self.selected = first.map(|row| row.path.clone()).unwrap_or_default();
+        }
         if self.selected_row().is_none() {
             // What was selected is gone: what is around it is the nearest.
             let around = self.rows.iter().filter(|row| self.selected.starts_with(&row.path));

@@ -20,12 +20,18 @@ impl App {
         let name = Path::new(&self.document.state().name).to_owned();
         let stem = name.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let stem = stem.trim_end_matches(".scene.ron");
-        let folder = name.parent().filter(|folder| !folder.as_os_str().is_empty()).map(Path::to_owned);
+        self.ask_path_named(purpose, &format!("{stem}{}", purpose.extension()));
+    }
+
+    /// Asks for a path, of a file of this name if it is to be made.
+    pub fn ask_path_named(&mut self, purpose: Purpose, name: &str) {
+        let scene = Path::new(&self.document.state().name).to_owned();
+        let folder = scene.parent().filter(|folder| !folder.as_os_str().is_empty()).map(Path::to_owned);
         let here = || std::env::current_dir().unwrap_or_default();
         let folder = folder.unwrap_or_else(here);
         let path = match purpose {
             Purpose::Open | Purpose::Modules => format!("{}/", folder.display()),
-            purpose => folder.join(format!("{stem}{}", purpose.extension())).display().to_string(),
+            _ => folder.join(name).display().to_string(),
         };
         self.dialog = Some(crate::files::Dialog::new(purpose, path));
     }
@@ -136,6 +142,7 @@ impl App {
     fn chosen(&mut self, purpose: Purpose, path: String) {
         match purpose {
             Purpose::Open => self.open_file(path.into()),
+            Purpose::Code => crate::panels::save_code(self, &path),
             Purpose::Modules => self.use_modules(Some(path.into())),
             Purpose::SaveAs => self.save_as(&path),
             Purpose::Png | Purpose::Exr | Purpose::Wgsl | Purpose::Recipe => {

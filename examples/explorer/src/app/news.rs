@@ -1,7 +1,7 @@
 //! Asking the lanes, and hearing what they tell.
 
 use super::{App, Problem};
-use crate::work::{News, Paint};
+use crate::work::{Concerned, News, Paint, Places};
 
 impl App {
     /// Takes in what the lanes have told.
@@ -19,6 +19,7 @@ impl App {
             News::Painted(painted) => {
                 // Newer than what is shown, if not the newest: the old picture stays no longer than it must.
                 self.problems.clear();
+                self.tabs.timing.take(&painted);
                 self.viewport.show(&self.render_state, *painted);
             }
             News::Wrong { version, report } => {
@@ -46,6 +47,8 @@ impl App {
                     self.tree.legal = Some(legal);
                 }
             }
+            News::Inspected(inspected) => self.tabs.inspect.take(*inspected),
+            News::Concerned(concerned) => self.tabs.problems.concerned = concerned,
         }
     }
 
@@ -54,6 +57,34 @@ impl App {
         if let Some(size) = self.viewport.wants(self.version, self.document.is_open()) {
             let shot = self.shot();
             self.lanes.view.ask(Paint { shot, size });
+        }
+        if self.tabs.timing.measured.is_some_and(|version| version != self.version) {
+            // Its pictures would show what was.
+            self.lanes.view.cancel("measurement");
+            self.tabs.timing.measured = None;
+        }
+        self.ask_places();
+    }
+
+    /// Asks which rows the problems are about, where they are others than before.
+    fn ask_places(&mut self) {
+        let reports = self.problems.iter().filter_map(|problem| match problem {
+            Problem::Report(report) => Some(report),
+            Problem::Other(..) => None,
+        });
+        let is_known = reports.clone().eq(&self.tabs.problems.asked);
+        if is_known {
+            return;
+        }
+        self.tabs.problems.asked = reports.cloned().collect();
+        self.tabs.problems.concerned = Concerned::default();
+        let job = Places {
+            shot: self.shot(),
+            rows: self.rows.clone(),
+            reports: self.tabs.problems.asked.clone(),
+        };
+        if !job.reports.is_empty() {
+            self.lanes.desk.ask(job);
         }
     }
 }

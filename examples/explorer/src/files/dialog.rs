@@ -19,6 +19,8 @@ pub enum Purpose {
     Wgsl,
     /// The recipe of what is selected.
     Recipe,
+    /// The code that is shown.
+    Code,
     /// The user's folder of modules.
     Modules,
 }
@@ -33,6 +35,7 @@ impl Purpose {
             Self::Exr => "Export EXR...",
             Self::Wgsl => "Export WGSL...",
             Self::Recipe => "Export recipe...",
+            Self::Code => "Save code...",
             Self::Modules => "Modules folder...",
         }
     }
@@ -45,7 +48,7 @@ impl Purpose {
             Self::Exr => ".exr",
             Self::Wgsl => ".wgsl",
             Self::Recipe => ".recipe.ron",
-            Self::Modules => "",
+            Self::Code | Self::Modules => "",
         }
     }
 

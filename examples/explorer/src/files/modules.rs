@@ -14,7 +14,7 @@ pub struct Modules {
     pub folder: PathBuf,
     changed: Arc<AtomicBool>,
     #[cfg(not(target_arch = "wasm32"))]
-    _watcher: notify_debouncer_mini::Debouncer<notify_debouncer_mini::notify::RecommendedWatcher>,
+    _watcher: notify_debouncer_full::Debouncer<notify_debouncer_full::notify::RecommendedWatcher, notify_debouncer_full::RecommendedCache>,
 }
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -24,21 +24,25 @@ impl Modules {
     /// # Errors
     /// It is no folder, or the system cannot watch it.
     pub fn watch(folder: &Path, wake: impl Fn() + Send + 'static) -> Result<Self, String> {
-        use notify_debouncer_mini::notify::RecursiveMode;
+        use notify_debouncer_full::notify::{EventKind, RecursiveMode};
         /// An editor writes a file in several steps.
         const QUIET: std::time::Duration = std::time::Duration::from_millis(50);
-        let said = |error: notify_debouncer_mini::notify::Error| format!("{}: {error}", folder.display());
+        let said = |error: notify_debouncer_full::notify::Error| format!("{}: {error}", folder.display());
         if !folder.is_dir() {
             return Err(format!("{} is no folder", folder.display()));
         }
         let changed = Arc::new(AtomicBool::new(false));
         let seen = Arc::clone(&changed);
-        let mut watcher = notify_debouncer_mini::new_debouncer(QUIET, move |_| {
-            seen.store(true, Ordering::Relaxed);
-            wake();
-        })
-        .map_err(said)?;
-        watcher.watcher().watch(folder, RecursiveMode::Recursive).map_err(said)?;
+        let hear = move |events: notify_debouncer_full::DebounceEventResult| {
+            // The explorer itself reads the files, and some systems tell that, too.
+            let is_change = |kind: &EventKind| !matches!(kind, EventKind::Access(_));
+            if events.is_ok_and(|events| events.iter().any(|event| is_change(&event.kind))) {
+                seen.store(true, Ordering::Relaxed);
+                wake();
+            }
+        };
+        let mut watcher = notify_debouncer_full::new_debouncer(QUIET, None, hear).map_err(said)?;
+        watcher.watch(folder, RecursiveMode::Recursive).map_err(said)?;
         Ok(Self {
             folder: folder.to_owned(),
             changed,

@@ -11,6 +11,8 @@ use eframe::egui;
 
 use crate::App;
 
+pub(crate) use tabs::save_code;
+
 pub use tabs::{Tab, Tabs};
 pub use tree::TreeState;
 pub use viewport::{Camera, Viewport};

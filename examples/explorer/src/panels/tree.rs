@@ -98,6 +98,25 @@ pub(super) fn step(app: &mut App, down: bool) {
     }
 }
 
+/// Selects a row from elsewhere: nothing hides it any more, and it is scrolled to.
+pub(super) fn select(app: &mut App, path: &str) {
+    let Some(index) = app.rows.iter().position(|row| row.path == path) else {
+        return;
+    };
+    let mut depth = app.rows[index].depth;
+    for row in app.rows[..index].iter().rev() {
+        if row.depth < depth {
+            depth = row.depth;
+            app.tree.folded.remove(&row.path);
+        }
+    }
+    path.clone_into(&mut app.selected);
+    app.tree.scroll_to = true;
+    if !shown(app).iter().any(|row| row.path == path) {
+        app.tree.search.clear();
+    }
+}
+
 /// Shows or hides what is below the selected row.
 pub(super) fn fold(app: &mut App, fold: bool) {
     let path = app.selected.clone();

@@ -2,6 +2,7 @@
 
 mod choose;
 mod rows;
+mod subject;
 #[cfg(test)]
 mod tests;
 
@@ -14,6 +15,7 @@ use crate::document::Ancestor;
 
 pub use choose::{choose, element, name_in};
 pub use rows::rows;
+pub use subject::{Subject, row_of, subjects};
 
 /// One line of the tree.
 #[derive(Clone, Debug)]

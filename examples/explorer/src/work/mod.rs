@@ -5,10 +5,14 @@
 //! somebody turns a knob.
 
 mod bench;
+mod inspect;
 mod lane;
 mod legal;
+mod listing;
+mod measure;
 mod pace;
 mod paint;
+mod places;
 #[cfg(test)]
 mod tests;
 
@@ -20,9 +24,13 @@ use shadewright_runtime::scene::SceneFile;
 use crate::files::Found;
 
 pub use bench::Bench;
+pub use inspect::{Inspect, Inspected, Language, Made, View, inspect};
 pub use lane::{Job, Lane, Progress, Step};
 pub use legal::{Legal, Try, Verdict, links, reason};
+pub use listing::{Line, Listing};
+pub use measure::Measure;
 pub use paint::{Paint, Painted, Times, paint, wrong};
+pub use places::{Concerned, Places};
 
 /// A scene at one moment, with the library that it is linked from.
 #[derive(Clone)]
@@ -56,6 +64,10 @@ pub enum News {
     },
     /// Which choices are legal in a place.
     Legal(Legal),
+    /// Linked code.
+    Inspected(Box<Inspected>),
+    /// Which rows of the tree problems concern.
+    Concerned(Concerned),
     /// What a file holds.
     Found(Found),
     /// A library that was read, or what is wrong with it.

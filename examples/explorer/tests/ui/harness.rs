@@ -71,13 +71,16 @@ pub fn start(start: Start, size: [f32; 2], scale: f32) -> Harness<'static, App> 
 pub fn settle(harness: &mut Harness<App>) {
     let start = Instant::now();
     harness.run_steps(2);
+    let mut was_idle = false;
     loop {
         let app = harness.state();
         let is_idle = app.lanes.view.is_idle() && app.lanes.desk.is_idle() && app.lanes.long.is_idle();
         harness.run_steps(2);
-        if is_idle {
+        // What was told last may have been answered by asking for more.
+        if is_idle && was_idle {
             return;
         }
+        was_idle = is_idle;
         assert!(start.elapsed() < PATIENCE, "it does not settle");
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -85,15 +88,20 @@ pub fn settle(harness: &mut Harness<App>) {
 
 /// Clicks what has this name.
 pub fn click(harness: &mut Harness<App>, name: &str) {
-    let found: Vec<_> = harness
-        .query_all_by_label(name)
-        .filter(|node| CLICKABLE.contains(&node.accesskit_node().role()))
-        .collect();
-    let [node] = found.as_slice() else {
-        panic!("there are {} {name:?}, and {:#?}", found.len(), names(harness));
-    };
-    node.click();
+    button(harness, name).scroll_to_me();
+    harness.run_steps(4);
+    button(harness, name).click();
     harness.run_steps(3);
+}
+
+/// What has this name and can be clicked.
+fn button<'h>(harness: &'h Harness<App>, name: &'h str) -> Node<'h> {
+    let clickable = |node: &Node| CLICKABLE.contains(&node.accesskit_node().role());
+    let mut found: Vec<_> = harness.query_all_by_label(name).filter(clickable).collect();
+    match found.pop() {
+        Some(node) if found.is_empty() => node,
+        _ => panic!("not one {name:?} among {:#?}", names(harness)),
+    }
 }
 
 /// Mean of the picture's pixels, 0 to 1 for red, green and blue.
@@ -107,7 +115,7 @@ pub fn mean(harness: &Harness<App>) -> [f64; 3] {
 }
 
 /// What can be clicked.
-pub const CLICKABLE: [Role; 3] = [Role::Button, Role::CheckBox, Role::RadioButton];
+pub const CLICKABLE: [Role; 5] = [Role::Button, Role::CheckBox, Role::ComboBox, Role::Link, Role::RadioButton];
 
 /// The names of all that can be clicked.
 pub fn names(harness: &Harness<App>) -> Vec<String> {

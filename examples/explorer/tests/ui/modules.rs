@@ -62,4 +62,6 @@ fn an_edit_of_a_module_is_seen() {
     until(&mut explorer, "mended", |app| app.problems.is_empty());
     assert_eq!(mean(&explorer), dark);
     assert_eq!(said(&explorer, "materials.matt.brdf"), Some("\"mine\""));
+    // What the explorer reads itself is no change: three edits here, each seen at most twice, and three versions before.
+    assert!(explorer.state().version <= 9, "{}", explorer.state().version);
 }

@@ -3,8 +3,8 @@
 use eframe::egui::{self, DragValue, Response, Slider};
 use shadewright_compiler::manifest::{KELVIN, Param, ParamType, Typed, Value, typed};
 
-/// A range over more than this factor is turned by its logarithm.
-const WIDE: f64 = 200.0;
+/// A range over more than this factor, or from 0 to more than this, is turned by its logarithm.
+const WIDE: f64 = 100.0;
 /// Where a range begins at 0, the logarithm begins at this share of its end.
 const SMALLEST: f64 = 1e-5;
 
@@ -40,7 +40,7 @@ fn number(ui: &mut egui::Ui, label: &Response, param: &Param, value: f64, is_who
     let mut new = value;
     let response = match param.range {
         Some((low, high)) if high - low < 1e7 => {
-            let is_wide = low >= 0.0 && high / low.max(high * SMALLEST) > WIDE;
+            let is_wide = if low > 0.0 { high / low > WIDE } else { low == 0.0 && high >= WIDE };
             let mut slider = Slider::new(&mut new, low..=high).suffix(suffix(param));
             if is_whole {
                 slider = slider.integer();
@@ -104,6 +104,12 @@ fn color(ui: &mut egui::Ui, label: &Response, name: &str, rgb: [f32; 3], value: 
             .range(*KELVIN.start()..=*KELVIN.end())
             .max_decimals(0)
             .suffix(" K");
+        // A colour that is none of a black body has no temperature to show.
+        let drag = if kelvin.is_none() {
+            drag.custom_formatter(|_, _| String::new())
+        } else {
+            drag
+        };
         let response = ui.add(drag);
         let accessible = format!("{name} temperature");
         response.widget_info(|| egui::WidgetInfo {

@@ -32,6 +32,7 @@ fn line(app: &mut App, ui: &mut egui::Ui, row: &Row) {
     if clicked {
         app.selected.clone_from(&row.path);
     }
+    mark(app, ui, row);
     if row.is_choice() {
         menu::choices(app, ui, row);
     }
@@ -49,6 +50,29 @@ fn line(app: &mut App, ui: &mut egui::Ui, row: &Row) {
             }
         }
         _ => {}
+    }
+}
+
+/// A sign on a row that a problem is about, or that hides such a row.
+fn mark(app: &mut App, ui: &mut egui::Ui, row: &Row) {
+    let concerned = &app.tabs.problems.concerned;
+    if concerned.rows.is_empty() {
+        return;
+    }
+    let hides = || {
+        let after = app.rows.iter().skip_while(|other| other.path != row.path).skip(1);
+        let mut inside = after.take_while(|other| other.depth > row.depth);
+        app.tree.folded.contains(&row.path) && inside.any(|other| concerned.has(&other.path))
+    };
+    if !concerned.has(&row.path) && !hides() {
+        return;
+    }
+    let sign = RichText::new("⚠").color(ui.visuals().error_fg_color);
+    let name = format!("Problem in {}", row.path);
+    let response = ui.add(Button::new(sign).frame(false).small());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    if response.on_hover_text("What is wrong here").clicked() {
+        app.tabs.shown = crate::panels::Tab::Problems;
     }
 }
 

@@ -1,0 +1,191 @@
+//! What a person waits for: from a choice to its picture, from the start to the first one, and what memory does over a thousand choices.
+//!
+//! `cargo bench -p explorer` prints a table; `-- --write FILE` puts it there as well, `-- --scene NAME` takes another example. Needs a GPU or a software driver, and no display.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a benchmark ends where something is wrong, and prints"
+)]
+
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+use eframe::egui::Vec2;
+use egui_kittest::Harness;
+use explorer::tree::{choose, options};
+use explorer::work::Times;
+use explorer::{App, Start, scenes};
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
+
+/// Switches that are timed.
+const SWITCHES: usize = 200;
+/// Switches over which memory is watched.
+const MANY: usize = 1000;
+/// Size of the pictures that are timed.
+const PICTURE: [f32; 2] = [640.0, 480.0];
+
+/// One choice.
+struct Switch {
+    /// From the choice to the frame of the window that shows its picture.
+    all: Duration,
+    times: Times,
+}
+
+struct Explorer {
+    harness: Harness<'static, App>,
+    random: Pcg32,
+}
+
+impl Explorer {
+    /// With one of the examples, drawn once, and the time from nothing to that.
+    fn open(example: &str, picture: [f32; 2]) -> (Self, Duration) {
+        let start = Instant::now();
+        let scene = scenes::find(example).unwrap().scene().unwrap();
+        let harness = Harness::builder()
+            .with_size(Vec2::new(1280.0, 800.0))
+            .wgpu_setup(explorer::setup())
+            .build_eframe(|context| {
+                let render_state = context.wgpu_render_state.clone().unwrap();
+                App::new(&context.egui_ctx, render_state, Start::with(scene))
+                    .map_err(|report| report.render())
+                    .unwrap()
+            });
+        let mut explorer = Self {
+            harness,
+            random: Pcg32::new(0x5eed, 11),
+        };
+        explorer.wait();
+        let first = start.elapsed();
+        // The window becomes as large as makes the picture as large as it should be.
+        let shown = explorer.harness.state().viewport.rect.unwrap().size();
+        let size = Vec2::new(1280.0, 800.0) + Vec2::from(picture) - shown;
+        explorer.harness.set_size(size);
+        explorer.harness.run_steps(4);
+        explorer.wait();
+        (explorer, first)
+    }
+
+    /// Steps until the present version is shown or has failed; whether it is shown.
+    fn wait(&mut self) -> bool {
+        loop {
+            self.harness.step();
+            let app = self.harness.state();
+            let is_shown = app.viewport.painted.as_ref().is_some_and(|painted| painted.version == app.version);
+            if is_shown && app.lanes.view.is_idle() {
+                return app.problems.is_empty();
+            }
+            if !app.problems.is_empty() && app.lanes.view.is_idle() {
+                return false;
+            }
+            std::thread::sleep(Duration::from_micros(200));
+        }
+    }
+
+    /// Some other module in some place; `None` where that is not legal, and was taken back.
+    fn switch(&mut self) -> Option<Switch> {
+        let app = self.harness.state_mut();
+        let places: Vec<_> = app
+            .rows
+            .iter()
+            .filter(|row| row.is_choice() && row.path != "pass")
+            .cloned()
+            .collect();
+        let row = &places[self.random.next_u32() as usize % places.len()];
+        let catalog = app.catalog.clone();
+        let fitting: Vec<_> = options(&catalog, row.interface()?).collect();
+        let module = fitting[self.random.next_u32() as usize % fitting.len()];
+        if row.module.as_ref().is_some_and(|chosen| chosen.name == module.name) {
+            return None;
+        }
+        let start = Instant::now();
+        app.edit("switch", |draft| choose(draft, &catalog, row, Some(module)));
+        if !self.wait() {
+            self.harness.state_mut().document.undo();
+            self.wait();
+            return None;
+        }
+        let painted = self.harness.state().viewport.painted.as_ref()?;
+        Some(Switch {
+            all: start.elapsed(),
+            times: painted.times.clone(),
+        })
+    }
+}
+
+/// Median, 90th percentile and worst, ms.
+fn row(table: &mut String, name: &str, mut times: Vec<Duration>) {
+    times.sort_unstable();
+    let at = |share: f64| times[((times.len() - 1) as f64 * share).round() as usize].as_secs_f64() * 1e3;
+    let _ = writeln!(table, "| {name} | {:.1} | {:.1} | {:.1} |", at(0.5), at(0.9), at(1.0));
+}
+
+/// Resident memory, MiB; `None` where the system does not tell.
+fn memory() -> Option<f64> {
+    let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
+    let resident: f64 = pages.split(' ').nth(1)?.parse().ok()?;
+    Some(resident * 4096.0 / f64::from(1 << 20))
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let given = |name: &str| {
+        arguments
+            .iter()
+            .position(|argument| argument == name)
+            .and_then(|at| arguments.get(at + 1))
+    };
+    let example = given("--scene").map_or("sphere", String::as_str);
+    let (mut explorer, first) = Explorer::open(example, PICTURE);
+    let mut switches = Vec::new();
+    while switches.len() < SWITCHES {
+        switches.extend(explorer.switch());
+    }
+    let gpu = explorer.harness.state().gpu.name();
+    let mut table = format!(
+        "{gpu}; the scene `{example}` at {} x {}, {SWITCHES} random choices of modules, one after the other; ms\n\n| | median | 90 % | worst |\n|-|-|-|-|\n",
+        PICTURE[0], PICTURE[1]
+    );
+    let of = |part: fn(&Switch) -> Duration| switches.iter().map(part).collect::<Vec<_>>();
+    row(&mut table, "from the choice to the picture on the screen", of(|s| s.all));
+    row(&mut table, "scene to recipes", of(|s| s.times.derive));
+    row(&mut table, "link", of(|s| s.times.cpu.link));
+    row(&mut table, "pipelines", of(|s| s.times.cpu.pipelines));
+    row(&mut table, "recording", of(|s| s.times.cpu.record));
+    row(
+        &mut table,
+        "frame on the GPU, with what its driver compiles then",
+        of(|s| s.times.gpu),
+    );
+    let _ = writeln!(
+        table,
+        "\nFrom nothing (no device yet) to the first picture: {:.0} ms.",
+        first.as_secs_f64() * 1e3
+    );
+    drop(explorer);
+    // Small pictures: what is kept is the same.
+    let (mut explorer, _) = Explorer::open("sphere", [64.0, 48.0]);
+    let mut resident = Vec::new();
+    let mut done = 0;
+    while done < MANY {
+        done += usize::from(explorer.switch().is_some());
+        if done % 100 == 0 && resident.len() < done / 100 {
+            resident.extend(memory());
+        }
+    }
+    let said: Vec<String> = resident.iter().map(|mebibytes| format!("{mebibytes:.0}")).collect();
+    let _ = writeln!(
+        table,
+        "\nResident memory after 100, 200 ... {MANY} choices, MiB: {}.",
+        said.join(", ")
+    );
+    println!("{table}");
+    if let Some(file) = arguments
+        .iter()
+        .position(|argument| argument == "--write")
+        .and_then(|at| arguments.get(at + 1))
+    {
+        std::fs::write(file, &table).unwrap();
+    }
+}
