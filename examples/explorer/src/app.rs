@@ -104,6 +104,9 @@ pub struct App {
     /// The user's folder of modules.
     pub modules: Option<Modules>,
     pub(crate) context: egui::Context,
+    /// Files that people have given to the page.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) inbox: crate::files::web::Inbox,
     state_file: Option<PathBuf>,
     /// What was kept last, and when something was found to be kept.
     keeping: (Kept, Option<Instant>),
@@ -150,6 +153,8 @@ impl App {
             kept: start.kept,
             modules: None,
             context: context.clone(),
+            #[cfg(target_arch = "wasm32")]
+            inbox: crate::files::web::Inbox::default(),
             state_file: start.state_file,
             seen: None,
         };
@@ -208,8 +213,13 @@ impl App {
 
     /// Edits another scene from now on. The one before is kept where it was saved only.
     pub fn open(&mut self, scene: SceneFile) {
-        self.message = format!("opened {}", scene.source().name);
-        self.document = Document::new(scene);
+        self.open_document(Document::new(scene));
+    }
+
+    /// The same, with what was switched off in it.
+    pub fn open_document(&mut self, document: Document) {
+        self.message = format!("opened {}", document.state().name);
+        self.document = document;
         self.seen = None;
         self.viewport.forget();
         self.compare.forget(&self.render_state);

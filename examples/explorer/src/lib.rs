@@ -10,6 +10,7 @@
 //! - [`work`]: whatever takes longer than a frame of the window, done beside it.
 //! - [`compare`]: what is true, and how far from it a picture is.
 //! - [`files`]: scenes, pictures, modules and what is kept between two starts.
+//! - [`link`]: a scene as the address of a page.
 //! - [`panels`]: what is on the screen.
 //! - [`App`]: all of it together.
 
@@ -19,8 +20,11 @@ mod app;
 pub mod compare;
 pub mod document;
 pub mod files;
+pub mod link;
 pub mod panels;
 pub mod scenes;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod serve;
 mod setup;
 pub mod tree;
 pub mod work;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use clap::Parser;
+use clap::{Parser, Subcommand};
 use eframe::egui;
 use explorer::document::Document;
 use explorer::files::{Kept, Modules, state_file};
@@ -14,7 +14,10 @@ use shadewright_runtime::scene::SceneFile;
 
 /// An interactive explorer of shading permutations
 #[derive(Parser)]
+#[command(args_conflicts_with_subcommands = true)]
 struct Options {
+    #[command(subcommand)]
+    command: Option<Command>,
     /// Scene (*.scene.ron), or the name of an example; else what was edited last
     scene: Option<PathBuf>,
     /// Folder of modules that come before those of the standard library, watched for changes
@@ -25,9 +28,24 @@ struct Options {
     fresh: bool,
 }
 
+#[derive(Subcommand)]
+enum Command {
+    /// Build the explorer as a web page and serve it to the browsers of this machine
+    Serve {
+        /// Port on localhost; 0 takes one that is free
+        #[arg(long, default_value_t = 8080)]
+        port: u16,
+    },
+}
+
 fn main() -> ExitCode {
     env_logger::init();
-    match run(&Options::parse()) {
+    let options = Options::parse();
+    let result = match options.command {
+        Some(Command::Serve { port }) => explorer::serve::run(port),
+        None => run(&options),
+    };
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             log::error!("{message}");

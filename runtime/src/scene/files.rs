@@ -92,7 +92,8 @@ impl fmt::Debug for Files {
 
 impl Files {
     /// These files and no others, for hosts without a file system. Names are paths with `/` between their parts, as they come out when what a scene
-    /// names is put behind the scene's folder: a scene of the folder `scenes` that names `../brick.png` has `brick.png`.
+    /// names is put behind the scene's folder: a scene of the folder `scenes` that names `../brick.png` has `brick.png`. A file whose name has no `/`
+    /// stands for those of its name in all folders that have no file themselves: of files that people give to a page no folder is known.
     pub fn memory(files: IndexMap<String, Arc<[u8]>>) -> Self {
         Self {
             source: Source {
@@ -108,6 +109,28 @@ impl Files {
     pub fn or_disk(mut self) -> Self {
         self.source.disk = true;
         self
+    }
+
+    /// The same with a file more, or another in the place of one of this name. What was made so far is not shared.
+    #[must_use]
+    pub fn with(&self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> Self {
+        let mut memory = IndexMap::clone(&self.source.memory);
+        memory.insert(name.into(), bytes.into());
+        Self {
+            source: Source {
+                memory: Arc::new(memory),
+                disk: self.source.disk,
+            },
+            kept: Arc::default(),
+        }
+    }
+
+    /// The bytes of a file, at most `most` of them.
+    ///
+    /// # Errors
+    /// Says why the file cannot be read, or that it has more.
+    pub fn bytes(&self, path: &Path, most: u64) -> Result<Vec<u8>, String> {
+        self.read(path, most, &mut None)
     }
 
     /// A frame begins: forgets what the latest frames have not asked for.
@@ -220,7 +243,7 @@ impl Files {
 
     /// The bytes of a file, which is noted among the origins of what is made from it.
     fn read(&self, path: &Path, most: u64, origins: &mut Origins) -> Result<Vec<u8>, String> {
-        if let Some(bytes) = name_of(path).and_then(|name| self.source.memory.get(&name)) {
+        if let Some(bytes) = self.in_memory(path) {
             if bytes.len() as u64 > most {
                 return Err(format!("longer than the {most} bytes that a file may have"));
             }
@@ -236,6 +259,13 @@ impl Files {
             _ => *origins = None,
         }
         read_bytes(path, most)
+    }
+
+    fn in_memory(&self, path: &Path) -> Option<&Arc<[u8]>> {
+        let name = name_of(path)?;
+        let memory = &self.source.memory;
+        let anywhere = || memory.get(name.rsplit('/').next()?);
+        memory.get(&name).or_else(|| if self.source.disk { None } else { anywhere() })
     }
 
     /// The state of a file on disk, where the system tells.

@@ -7,13 +7,15 @@ use eframe::egui;
 use web_time::Instant;
 
 use super::App;
-use crate::files::{Answer, Dialog, Export, Keep, Kept, Modules, Purpose, Reload, save};
+use crate::document::State;
+use crate::files::{Answer, Export, Keep, Kept, Modules, Purpose, Reload, save};
 
 /// What has changed is kept this long after it: not for every step of a slider.
 const PATIENCE: Duration = Duration::from_millis(300);
 
 impl App {
     /// Asks for a path.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn ask_path(&mut self, purpose: Purpose) {
         let name = Path::new(&self.document.state().name).to_owned();
         let stem = name.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -31,7 +33,23 @@ impl App {
             Purpose::Open | Purpose::Modules => format!("{}/", folder.display()),
             _ => folder.join(name).display().to_string(),
         };
-        self.dialog = Some(Dialog::new(purpose, path));
+        self.dialog = Some(crate::files::Dialog::new(purpose, path));
+    }
+
+    /// Has the browser ask where there is something to ask; what is saved goes among the downloads.
+    #[cfg(target_arch = "wasm32")]
+    pub fn ask_path(&mut self, purpose: Purpose) {
+        let name = self.document.state().name.clone();
+        let stem = name.rsplit('/').next().unwrap_or_default().trim_end_matches(".scene.ron");
+        match purpose {
+            Purpose::Open => {
+                if let Err(error) = self.inbox.ask(&self.context) {
+                    self.message = crate::files::web::said(&error);
+                }
+            }
+            Purpose::Modules => self.message = "a page has no folders".to_owned(),
+            purpose => self.chosen(purpose, format!("{stem}{}", purpose.extension())),
+        }
     }
 
     /// Saves the scene where it is from; asks where that is nowhere.
@@ -49,6 +67,12 @@ impl App {
         match save(path, self.document.state().text.as_bytes()) {
             Ok(at) => {
                 self.message = format!("saved {at}");
+                if cfg!(target_arch = "wasm32") {
+                    // It is still what its link says.
+                    let State { name, folder, .. } = self.document.state().clone();
+                    self.document.saved(name, folder);
+                    return;
+                }
                 let path = Path::new(path);
                 self.document
                     .saved(path.display().to_string(), path.parent().unwrap_or(Path::new("")).to_owned());
@@ -90,8 +114,14 @@ impl App {
     /// What files ask for in every frame: the dialog, what is dropped, what has changed, what is to be kept.
     pub(super) fn mind_files(&mut self, context: &egui::Context) {
         let dropped = context.input(|input| input.raw.dropped_files.clone());
+        #[cfg(not(target_arch = "wasm32"))]
         for file in dropped {
             self.open_file(file.path().to_owned());
+        }
+        #[cfg(target_arch = "wasm32")]
+        {
+            self.inbox.receive(dropped, context);
+            self.take_inbox();
         }
         if self.modules.as_ref().is_some_and(Modules::take_change) {
             self.lanes.desk.ask(Reload::Again(self.catalog.clone()));
@@ -123,6 +153,7 @@ impl App {
                     recipe: self.selected_recipe(),
                     size,
                     path,
+                    reading: None,
                 });
             }
         }

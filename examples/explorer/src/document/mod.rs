@@ -108,6 +108,12 @@ impl Document {
         &self.scene
     }
 
+    /// Its files come from there from now on.
+    pub fn use_files(&mut self, files: Files) {
+        self.scene = self.scene.clone().with_files(files);
+        self.version += 1;
+    }
+
     /// What an edit changes.
     pub fn state(&self) -> &State {
         &self.state

@@ -5,20 +5,22 @@ use std::sync::atomic::AtomicBool;
 
 use glam::Vec3;
 use shadewright_compiler::manifest::ResourceKind;
-use shadewright_compiler::{Catalog, Module};
+use shadewright_compiler::{Catalog, Module, limits};
 use shadewright_runtime::data::{self, FORMATS, PLAIN};
 use shadewright_runtime::mesh::gltf;
-use shadewright_runtime::scene::SceneFile;
+use shadewright_runtime::scene::{Files, SceneFile};
 
+use crate::App;
 use crate::document::{quoted, ron_of, step_path};
 use crate::tree::{Row, name_in};
 use crate::work::{Bench, Job, News, Step};
-use crate::{App, scenes};
 
 /// Looks at a file.
 pub struct Look {
     /// The file.
     pub path: PathBuf,
+    /// Where it is, and what it names.
+    pub files: Files,
 }
 
 /// What a file holds.
@@ -48,7 +50,7 @@ impl Job for Look {
     }
 
     fn step(&mut self, _: &mut Bench, _: &AtomicBool, tell: &mut dyn FnMut(News)) -> Step {
-        tell(match look(&self.path) {
+        tell(match look(&self.path, &self.files) {
             Ok(found) => News::Found(found),
             Err(why) => News::Failed {
                 what: "opening",
@@ -60,36 +62,39 @@ impl Job for Look {
 }
 
 /// Finds out what a file holds, by its name's end and, where that says nothing, by its bytes.
-fn look(path: &Path) -> Result<Found, String> {
+fn look(path: &Path, files: &Files) -> Result<Found, String> {
     let name = path
         .file_name()
         .map(|name| name.to_string_lossy().to_lowercase())
         .unwrap_or_default();
-    let path = std::path::absolute(path).map_err(|error| error.to_string())?;
+    // A page has no folder that it is in.
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     if path.is_dir() {
         return Ok(Found::Folder(path));
     }
     if name.ends_with(".ron") {
-        let scene = SceneFile::read(&path)
-            .map_err(|report| report.render())?
-            .with_files(scenes::files());
+        let text = files.bytes(&path, limits::FILE_SIZE as u64)?;
+        let text = String::from_utf8(text).map_err(|error| error.to_string())?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let scene = SceneFile::parse(&path.display().to_string(), &text, folder).map_err(|report| report.render())?;
         return Ok(Found::Scene {
-            scene: Box::new(scene),
+            scene: Box::new(scene.with_files(files.clone())),
             path: Some(path),
         });
     }
     if name.ends_with(".gltf") || name.ends_with(".glb") {
-        let scene = Box::new(around(&path)?);
+        let scene = Box::new(around(&path, files)?);
         return Ok(Found::Scene { scene, path: None });
     }
-    let format = format_of(&path)?;
+    let format = format_of(&path, files)?;
     Ok(Found::Data { path, format })
 }
 
 impl App {
     /// Opens a file by what it is: a scene, glTF, data for what is selected, or a folder of modules.
     pub fn open_file(&mut self, path: PathBuf) {
-        self.lanes.desk.ask(Look { path });
+        let files = self.document.scene().files().clone();
+        self.lanes.desk.ask(Look { path, files });
     }
 
     /// Takes what a file held.
@@ -138,12 +143,8 @@ impl App {
 }
 
 /// The format of a file of data; `None` for a picture that is a texture.
-fn format_of(path: &Path) -> Result<Option<String>, String> {
-    let size = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
-    if size > data::MAX_DATA {
-        return Err(format!("{size} bytes are more than the {} that a file may have", data::MAX_DATA));
-    }
-    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+fn format_of(path: &Path, files: &Files) -> Result<Option<String>, String> {
+    let bytes = files.bytes(path, data::MAX_DATA)?;
     // Any bytes may be plain numbers, so nothing is known by that.
     let found = FORMATS.iter().find(|(name, decode)| *name != PLAIN && decode(&bytes).is_ok());
     match found {
@@ -173,8 +174,8 @@ fn light_for(catalog: &Catalog, format: Option<&str>) -> Option<(String, String)
 }
 
 /// A scene around a glTF file: seen by its own camera, or from where all of it is seen; lit by its own lights, or by a sun.
-fn around(path: &Path) -> Result<SceneFile, String> {
-    let asset = gltf::load(path).map_err(|error| error.to_string())?;
+fn around(path: &Path, files: &Files) -> Result<SceneFile, String> {
+    let asset = gltf::load_with(path, &mut |path| files.bytes(path, gltf::MAX_FILE)).map_err(|error| error.to_string())?;
     let boxes = asset
         .objects
         .iter()
@@ -207,6 +208,6 @@ fn around(path: &Path) -> Result<SceneFile, String> {
     text += &format!("    gltf: [(file: {})],\n)\n", quoted(&file));
     let scene = SceneFile::parse(&format!("{}.scene.ron", path.display()), &text, &folder);
     scene
-        .map(|scene| scene.with_files(scenes::files()))
+        .map(|scene| scene.with_files(files.clone()))
         .map_err(|report| crate::work::reason(&report))
 }

@@ -4,11 +4,12 @@ use std::sync::atomic::AtomicBool;
 
 use shadewright_compiler::Recipe;
 use shadewright_compiler::manifest::Node;
+use shadewright_runtime::frame::{DisplayReading, HdrReading};
 use shadewright_runtime::gpu::RuntimeError;
 use shadewright_runtime::image::{Hdr, encode_exr, encode_png};
 
 use super::{Purpose, save};
-use crate::work::{Bench, Job, News, Shot, Step, wrong};
+use crate::work::{Bench, Job, News, Progress, Shot, Step, wrong};
 
 /// Makes a file of the present scene.
 pub struct Export {
@@ -22,6 +23,17 @@ pub struct Export {
     pub size: [u32; 2],
     /// Where it goes.
     pub path: String,
+    /// The picture on its way from the GPU: `None` at first.
+    pub reading: Option<Picture>,
+}
+
+/// A picture on its way from the GPU.
+#[derive(Debug)]
+pub enum Picture {
+    /// As it is displayed.
+    Display(DisplayReading),
+    /// cd/m2.
+    Linear(HdrReading),
 }
 
 impl Job for Export {
@@ -37,7 +49,14 @@ impl Job for Export {
         tell(match self.bytes(bench) {
             Err(error) => wrong(error, self.shot.version, self.kind()),
             Ok(Err(message)) => failed(message),
-            Ok(Ok(bytes)) => match save(&self.path, &bytes) {
+            Ok(Ok(None)) => {
+                return Step::Continue(Progress {
+                    what: "exporting".into(),
+                    done: 1,
+                    of: 2,
+                });
+            }
+            Ok(Ok(Some(bytes))) => match save(&self.path, &bytes) {
                 Ok(path) => News::Said(format!("wrote {path}")),
                 Err(message) => failed(message),
             },
@@ -47,43 +66,61 @@ impl Job for Export {
 }
 
 impl Export {
-    /// What goes into the file; within, why there is nothing to put there.
-    fn bytes(&self, bench: &mut Bench) -> Result<Result<Vec<u8>, String>, RuntimeError> {
+    /// What goes into the file, once it is there; within, why there is nothing to put there.
+    fn bytes(&mut self, bench: &mut Bench) -> Result<Result<Option<Vec<u8>>, String>, RuntimeError> {
         match (self.purpose, &self.recipe) {
             (Purpose::Png | Purpose::Exr, _) => self.picture(bench),
             (Purpose::Recipe, Some(recipe)) => {
                 let config = ron::ser::PrettyConfig::new();
                 Ok(ron::ser::to_string_pretty(recipe, config)
-                    .map(String::into_bytes)
+                    .map(|text| Some(text.into_bytes()))
                     .map_err(|error| error.to_string()))
             }
             (Purpose::Wgsl, Some(recipe)) => {
                 let program = self.shot.catalog.compile(&Recipe::from(recipe.clone()), "main")?;
-                Ok(Ok(program.wgsl().as_bytes().to_vec()))
+                Ok(Ok(Some(program.wgsl().as_bytes().to_vec())))
             }
             _ => Ok(Err("nothing is selected that has a recipe".to_owned())),
         }
     }
 
-    fn picture(&self, bench: &mut Bench) -> Result<Result<Vec<u8>, String>, RuntimeError> {
-        let mut frame = self.shot.scene.frame(&self.shot.catalog, Some(self.size))?;
+    fn picture(&mut self, bench: &mut Bench) -> Result<Result<Option<Vec<u8>>, String>, RuntimeError> {
         let [width, height] = self.size;
+        let taken = match &mut self.reading {
+            None => return Ok(self.start(bench)?.map(|()| None)),
+            Some(Picture::Display(reading)) => match reading.take(bench.gpu()) {
+                None => return Ok(Ok(None)),
+                Some(pixels) => encode_png(width, height, &pixels?),
+            },
+            Some(Picture::Linear(reading)) => match reading.take(bench.gpu()) {
+                None => return Ok(Ok(None)),
+                Some(texels) => encode_exr(&Hdr {
+                    width,
+                    height,
+                    texels: texels?,
+                    comment: "linear Rec.709, cd/m2".to_owned(),
+                }),
+            },
+        };
+        Ok(taken.map(Some).map_err(|error| error.to_string()))
+    }
+
+    /// Draws the picture and has it sent to the host.
+    fn start(&mut self, bench: &mut Bench) -> Result<Result<(), String>, RuntimeError> {
+        let mut frame = self.shot.scene.frame(&self.shot.catalog, Some(self.size))?;
         if self.purpose == Purpose::Exr {
             frame.display = None;
         }
         let renderer = bench.renderer(&self.shot.catalog);
         let targets = renderer.render(&frame)?;
         let gpu = renderer.gpu();
-        let picture = match targets.read_display(gpu)? {
-            Some(pixels) => encode_png(width, height, &pixels),
+        self.reading = Some(match targets.start_read_display(gpu)? {
+            Some(reading) => Picture::Display(reading),
             None if self.purpose == Purpose::Png => return Ok(Err("the scene has no `display` pass: export an EXR".to_owned())),
-            None => encode_exr(&Hdr {
-                width,
-                height,
-                texels: targets.read_hdr(gpu)?,
-                comment: "linear Rec.709, cd/m2".to_owned(),
-            }),
-        };
-        Ok(picture.map_err(|error| error.to_string()))
+            None => Picture::Linear(targets.start_read_hdr(gpu)?),
+        });
+        // A page waits for nothing, and asks again in its next frame.
+        gpu.wait()?;
+        Ok(Ok(()))
     }
 }

@@ -6,6 +6,8 @@ mod export;
 mod keep;
 mod modules;
 mod save;
+#[cfg(target_arch = "wasm32")]
+pub(crate) mod web;
 
 pub use dialog::{Answer, Dialog, Purpose};
 pub use drop::{Found, Look};

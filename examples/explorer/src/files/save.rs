@@ -10,3 +10,13 @@ pub fn save(name: &str, bytes: &[u8]) -> Result<String, String> {
     shadewright_runtime::image::write_atomically(path, bytes).map_err(|error| error.to_string())?;
     Ok(path.display().to_string())
 }
+
+/// Offers bytes to the browser as a download of this name. Where it goes the browser knows.
+///
+/// # Errors
+/// The browser does not take it.
+#[cfg(target_arch = "wasm32")]
+pub fn save(name: &str, bytes: &[u8]) -> Result<String, String> {
+    super::web::download(name, bytes).map_err(|error| super::web::said(&error))?;
+    Ok(format!("{name}, among the downloads"))
+}

@@ -57,6 +57,9 @@ fn files(app: &mut App, ui: &mut egui::Ui) {
         }
     };
     ask(app, ui, Purpose::Open, "Ctrl+O");
+    if cfg!(target_arch = "wasm32") {
+        return on_a_page(app, ui, ask);
+    }
     ui.menu_button("Recent", |ui| {
         for path in app.kept.recent.clone() {
             if ui.button(path.display().to_string()).clicked() {
@@ -88,6 +91,15 @@ fn files(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
+/// What is done with files where there is no disk.
+fn on_a_page(app: &mut App, ui: &mut egui::Ui, ask: impl Fn(&mut App, &mut egui::Ui, Purpose, &str)) {
+    ask(app, ui, Purpose::SaveAs, "Ctrl+S");
+    ui.separator();
+    for purpose in [Purpose::Png, Purpose::Exr, Purpose::Wgsl, Purpose::Recipe] {
+        ask(app, ui, purpose, "");
+    }
+}
+
 /// What happened last, what is being done, and what drawing costs.
 pub(super) fn status(app: &mut App, ui: &mut egui::Ui) {
     ui.horizontal(|ui| {
@@ -96,6 +108,8 @@ pub(super) fn status(app: &mut App, ui: &mut egui::Ui) {
         for (name, lane) in lanes {
             if let Some((kind, progress)) = lane.progress() {
                 ui.spinner();
+                // One step is over before anybody could cancel it.
+                let progress = progress.filter(|progress| progress.of > 1);
                 if let Some(progress) = &progress {
                     ui.label(format!("{}: {} of {}", progress.what, progress.done, progress.of));
                 } else {

@@ -1,10 +1,14 @@
 //! What the jobs of a lane work with.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use shadewright_compiler::Catalog;
 use shadewright_runtime::frame::Renderer;
-use shadewright_runtime::gpu::Gpu;
+use shadewright_runtime::gpu::{Gpu, GpuError};
+use web_time::Instant;
+
+use super::pace::Pace;
 
 /// Pipelines that are kept: some dozens of permutations to go back to.
 const MOST_KEPT: usize = 96;
@@ -13,12 +17,17 @@ const MOST_KEPT: usize = 96;
 pub struct Bench {
     gpu: Gpu,
     renderer: Option<(Arc<Catalog>, Renderer)>,
+    pace: Pace,
 }
 
 impl Bench {
     /// A bench on this device.
     pub fn new(gpu: Gpu) -> Self {
-        Self { gpu, renderer: None }
+        Self {
+            gpu,
+            renderer: None,
+            pace: Pace::default(),
+        }
     }
 
     /// The device.
@@ -42,6 +51,25 @@ impl Bench {
             renderer.set_catalog(Arc::clone(catalog));
         }
         renderer
+    }
+
+    /// Waits for the picture of this size that was submitted last; what it takes from here on. A page goes on at once, and the time is what the
+    /// picture before would have taken at this size.
+    ///
+    /// # Errors
+    /// The GPU fails.
+    pub fn wait(&self, size: [u32; 2]) -> Result<Duration, GpuError> {
+        if cfg!(target_arch = "wasm32") {
+            return Ok(self.pace.follow(&self.gpu, size));
+        }
+        let start = Instant::now();
+        self.gpu.wait()?;
+        Ok(start.elapsed())
+    }
+
+    /// Whether the GPU still draws a picture that nobody has waited for: another would pile up behind it.
+    pub fn is_drawing(&self) -> bool {
+        self.pace.is_running()
     }
 
     /// Forgets the renderer: after a panic in the middle of one of its frames.

@@ -11,6 +11,7 @@ mod lane;
 mod legal;
 mod listing;
 mod measure;
+mod pace;
 mod paint;
 mod places;
 mod reference;

@@ -8,7 +8,7 @@ use shadewright_runtime::frame::{CpuTimes, Frame, PassTime, Targets};
 use shadewright_runtime::gpu::RuntimeError;
 use web_time::Instant;
 
-use super::{Bench, Job, News, Shot, Step};
+use super::{Bench, Job, News, Progress, Shot, Step};
 
 /// Draws a scene.
 pub struct Paint {
@@ -52,6 +52,13 @@ impl Job for Paint {
     }
 
     fn step(&mut self, bench: &mut Bench, _: &AtomicBool, tell: &mut dyn FnMut(News)) -> Step {
+        if bench.is_drawing() {
+            return Step::Continue(Progress {
+                what: "drawing".into(),
+                done: 0,
+                of: 1,
+            });
+        }
         tell(match paint(bench, &self.shot, self.size) {
             Ok(painted) => News::Painted(Box::new(painted)),
             Err(error) => wrong(error, self.shot.version, self.kind()),
@@ -71,7 +78,8 @@ pub fn wrong(error: RuntimeError, version: u64, what: &'static str) -> News {
     }
 }
 
-/// Draws a scene and waits for it, so that whoever shows it need not.
+/// Draws a scene and waits for it, so that whoever shows it need not. A page does not wait: there the GPU's time is what the picture before would
+/// have taken at this size.
 ///
 /// # Errors
 /// The scene is wrong, or the GPU fails.
@@ -85,15 +93,12 @@ pub fn paint(bench: &mut Bench, shot: &Shot, size: [u32; 2]) -> Result<Painted, 
     let renderer = bench.renderer(&shot.catalog);
     let targets = renderer.render(&frame)?;
     let submitted = Instant::now();
-    if cfg!(not(target_arch = "wasm32")) {
-        renderer.gpu().wait()?;
-    }
-    times.gpu = submitted.elapsed();
-    if let Some(taken) = renderer.take_times() {
+    times.gpu = bench.wait(size)?;
+    times.all = submitted - start + times.gpu;
+    if let Some(taken) = bench.renderer(&shot.catalog).take_times() {
         times.cpu = taken.cpu;
         times.passes = taken.passes;
     }
-    times.all = start.elapsed();
     Ok(Painted {
         version: shot.version,
         targets,

@@ -127,6 +127,22 @@ fn files_in_memory_are_as_good_as_on_disk() {
         let report = file.frame(&catalog, None).unwrap_err().render();
         assert!(report.contains("there is no such file"), "without {name}: {report}");
     }
+    // Files of which only the names are known; the right one is preferred.
+    let mut files = scene_files();
+    files.push(("grey.png", grey(200)));
+    files[3].0 = "red.png";
+    let flat = there.clone().with_files(memory(files));
+    assert_eq!(Parts::of(&flat.frame(&catalog, None).unwrap()), expected);
+
+    // One more, and another in the place of one.
+    let (name, bytes) = scene_files().remove(3);
+    let most = memory(scene_files()[..3].to_vec()).with("scenes/grey.png", grey(77));
+    assert!(there.clone().with_files(most.clone()).frame(&catalog, None).is_err());
+    let parts = Parts::of(&there.clone().with_files(most.with(name, bytes)).frame(&catalog, None).unwrap());
+    assert_eq!((parts.textures[0].rgba[0], &parts.meshes), (77, &expected.meshes));
+    assert_eq!(most.bytes(Path::new("x/../scenes/grey.png"), 9999), Ok(grey(77)));
+    assert!(most.bytes(Path::new("scenes/grey.png"), 9).is_err() && most.bytes(Path::new("gone"), 9).is_err());
+
     // With one `..` fewer it would be there.
     let outside = SCENE.replace("\"grey.png", "\"../../grey.png");
     let outside = SceneFile::parse("a.scene.ron", &outside, Path::new("scenes")).unwrap();
