@@ -57,7 +57,10 @@ fn serve_driven(site: Site, links: &[String]) -> (u16, Receiver<Value>) {
     let (sender, said) = channel();
     let index = String::from_utf8(site.respond("/").body.into_owned()).unwrap();
     let driver = DRIVER.replace("/*LINKS*/[]", &serde_json::to_string(links).unwrap());
-    let driven = index.replace("<script type=\"module\">", &format!("<script>{driver}</script>\n<script type=\"module\">"));
+    let driven = index.replace(
+        "<script type=\"module\">",
+        &format!("<script>{driver}</script>\n<script type=\"module\">"),
+    );
     // It serves until the test's process ends.
     std::thread::spawn(move || {
         serve(&listener, |path| {
@@ -107,12 +110,20 @@ fn the_page_draws_and_follows() {
         Err(failed) => panic!("{failed}"),
     };
     // Red light on the sphere; then as it was.
-    let links = [changed("sphere", "lights[0].fields.color", "(1.0, 0.0, 0.0)"), "scene=sphere".to_owned()];
+    let links = [
+        changed("sphere", "lights[0].fields.color", "(1.0, 0.0, 0.0)"),
+        "scene=sphere".to_owned(),
+    ];
     let (port, said) = serve_driven(site, &links);
     let folder = tempfile::tempdir().unwrap();
     let child = Command::new(browser)
         .args(["--headless=new", "--no-sandbox", "--enable-unsafe-webgpu", "--disable-gpu-sandbox"])
-        .args(["--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"])
+        .args([
+            "--no-first-run",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+        ])
         .args(["--window-size=1000,700", "--enable-logging=stderr"])
         .arg(format!("--user-data-dir={}", folder.path().display()))
         .arg(format!("http://127.0.0.1:{port}/#scene=sphere"))
