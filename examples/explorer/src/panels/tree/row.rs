@@ -55,7 +55,7 @@ fn line(app: &mut App, ui: &mut egui::Ui, row: &Row) {
 /// The triangle before a line that has others below it.
 fn fold(app: &mut App, ui: &mut egui::Ui, row: &Row) {
     let mut after = app.rows.iter().skip_while(|other| other.path != row.path).skip(1);
-    if !after.next().is_some_and(|next| next.depth > row.depth) {
+    if after.next().is_none_or(|next| next.depth <= row.depth) {
         ui.add_space(18.0);
         return;
     }

@@ -133,10 +133,10 @@ fn dots(sweep: &SweepView, cost: Cost) -> Vec<Dot<'_>> {
         if least.is_finite() { least / 10.0 } else { 0.1 }
     };
     let floors = [floor(0), floor(1)];
-    let dot = |(alternative, value): &(_, [f64; 2])| Dot {
+    let dot = |(alternative, value)| Dot {
         alternative,
-        value: *value,
+        value,
         place: [0, 1].map(|axis| value[axis].max(floors[axis]).log10()),
     };
-    known.iter().map(dot).collect()
+    known.iter().copied().map(dot).collect()
 }
