@@ -1,5 +1,7 @@
 //! The explorer, driven by the names of what is on its screen.
 
+#![allow(clippy::unwrap_used)]
+
 mod alternatives;
 mod camera;
 mod choices;
