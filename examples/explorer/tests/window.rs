@@ -2,6 +2,8 @@
 //!
 //! Needs Xvfb, xdotool and ImageMagick, which `./setup tests` installs where it can. Where they are not there the test says so and checks nothing.
 
+#![allow(clippy::unwrap_used)]
+
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
