@@ -107,6 +107,11 @@ fn the_arrows_go_one_way() {
                 "shadewright-runtime",
             ][..],
         ),
+        (
+            "explorer",
+            &["shadewright-compiler", "shadewright-modules", "shadewright-report", "shadewright-runtime"][..],
+        ),
+        ("explorer-page", &[][..]),
         // Somebody else's: the compiler when it runs, the modules when it is built.
         ("renderer", &["shadewright-compiler", "shadewright-modules"][..]),
     ]);
