@@ -20,6 +20,8 @@ const SOURCES: &[&str] = &[
     "modules/src",
     "runtime/src",
     "runtime/report/src",
+    "examples/explorer/src",
+    "examples/explorer/page/src",
     "src",
 ];
 
@@ -107,6 +109,16 @@ fn the_arrows_go_one_way() {
                 "shadewright-runtime",
             ][..],
         ),
+        (
+            "explorer",
+            &[
+                "shadewright-compiler",
+                "shadewright-modules",
+                "shadewright-report",
+                "shadewright-runtime",
+            ][..],
+        ),
+        ("explorer-page", &[][..]),
         // Somebody else's: the compiler when it runs, the modules when it is built.
         ("renderer", &["shadewright-compiler", "shadewright-modules"][..]),
     ]);

@@ -7,7 +7,7 @@
 #![allow(clippy::unwrap_used)]
 
 use std::net::TcpListener;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
@@ -50,13 +50,25 @@ fn changed(example: &str, path: &str, value: &str) -> String {
     link::write(document.state(), "", Tab::default())
 }
 
+/// What is dropped on the page: a scene, and a picture that it names in a folder that the page does not know.
+fn dropped() -> [(&'static str, Vec<u8>); 2] {
+    let scene = scenes::find("screen").unwrap();
+    let text = scene.text.replace("screen.png", "pictures/mine.png");
+    let picture = scene.scene().unwrap().files().bytes(Path::new("screen.png"), 1 << 20).unwrap();
+    [("mine.scene.ron", text.into_bytes()), ("mine.png", picture)]
+}
+
 /// Serves the page with its driver, which goes through the links. What it says comes back by the channel.
 fn serve_driven(site: Site, links: &[String]) -> (u16, Receiver<Value>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     let (sender, said) = channel();
     let index = String::from_utf8(site.respond("/").body.into_owned()).unwrap();
-    let driver = DRIVER.replace("/*LINKS*/[]", &serde_json::to_string(links).unwrap());
+    let files = dropped();
+    let names = files.each_ref().map(|(name, _)| *name);
+    let driver = DRIVER
+        .replace("/*FILES*/[]", &serde_json::to_string(&names).unwrap())
+        .replace("/*LINKS*/[]", &serde_json::to_string(links).unwrap());
     let driven = index.replace(
         "<script type=\"module\">",
         &format!("<script>{driver}</script>\n<script type=\"module\">"),
@@ -68,6 +80,9 @@ fn serve_driven(site: Site, links: &[String]) -> (u16, Receiver<Value>) {
                 let text = unescaped(text);
                 let _ = sender.send(serde_json::from_str(&text).unwrap_or(Value::String(text)));
                 return Response::found("text/plain", &b""[..]);
+            }
+            if let Some((_, bytes)) = files.iter().find(|(name, _)| path.strip_prefix("/files/") == Some(name)) {
+                return Response::found("application/octet-stream", bytes.as_slice());
             }
             if path == "/" {
                 return Response::found("text/html; charset=utf-8", driven.as_bytes());
@@ -93,8 +108,8 @@ fn unescaped(text: &str) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
-/// Catches a page that does not start, draws nothing, does not do what it is told by its address or by the mouse, or does not say in its address what
-/// it shows; and whatever a browser complains about.
+/// Catches a page that does not start, draws nothing, does not do what it is told by its address or by the mouse, does not say in its address what it
+/// shows, does not take or give files; and whatever a browser complains about.
 #[test]
 fn the_page_draws_and_follows() {
     let Some(browser) = chromium() else {
@@ -118,6 +133,13 @@ fn the_page_draws_and_follows() {
     let folder = tempfile::tempdir().unwrap();
     let child = Command::new(browser)
         .args(["--headless=new", "--no-sandbox", "--enable-unsafe-webgpu", "--disable-gpu-sandbox"])
+        // A canvas of WebGPU wants the whole of the browser on one software driver.
+        .args([
+            "--use-webgpu-adapter=swiftshader",
+            "--enable-features=Vulkan",
+            "--use-vulkan=swiftshader",
+            "--use-angle=swiftshader",
+        ])
         .args([
             "--no-first-run",
             "--disable-background-networking",
@@ -160,4 +182,9 @@ fn the_page_draws_and_follows() {
     let before = scenes::find("sphere").unwrap().scene().unwrap();
     assert_ne!(camera(linked.document.scene()), camera(&before), "{address}");
     assert_eq!(linked.document.scene().scene().materials, before.scene().materials);
+    let own = hear("a scene of the user's, dropped with its picture");
+    assert!(own["address"].as_str().unwrap().starts_with("#scene=mine.scene.ron"), "{own}");
+    assert!(differ(colour(&own), colour(&turned)) > 4.0, "{turned} and {own}");
+    let saved = hear("the scene, saved");
+    assert_eq!((&saved["saved"], &saved["same"]), (&"mine.scene.ron".into(), &true.into()));
 }

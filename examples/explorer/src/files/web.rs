@@ -130,7 +130,15 @@ pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), JsValue> {
     link.set_href(&address);
     link.set_download(name);
     link.click();
-    Url::revoke_object_url(&address)
+    // The download may begin after this; what it needs is given back when it surely has.
+    let forget = Closure::once_into_js(move || {
+        if let Err(error) = Url::revoke_object_url(&address) {
+            log::debug!("{}", said(&error));
+        }
+    });
+    let window = web_sys::window().ok_or("no window")?;
+    window.set_timeout_with_callback_and_timeout_and_arguments_0(forget.unchecked_ref(), 60_000)?;
+    Ok(())
 }
 
 fn document() -> Result<Document, JsValue> {

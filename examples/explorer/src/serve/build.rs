@@ -79,7 +79,14 @@ pub fn build() -> Result<Site, BuildError> {
     let module = build_module()?;
     let folder = module.with_file_name("explorer-site");
     let mut command = Command::new(&bindgen);
-    command.args(["--target", "web", "--no-typescript", "--out-name", NAME, "--out-dir"]);
+    command.args([
+        "--target",
+        "web",
+        "--no-typescript",
+        "--remove-name-section",
+        "--remove-producers-section",
+    ]);
+    command.args(["--out-name", NAME, "--out-dir"]);
     run(command.arg(&folder).arg(&module))?;
     let index = folder.join("index.html");
     std::fs::write(&index, INDEX).map_err(|error| failed(format!("{}: {error}", index.display())))?;

@@ -5,10 +5,17 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use indexmap::IndexMap;
+use web_time::Instant;
 
 use super::{Bench, News};
+
+/// A lane without a thread takes no more of a frame of the window than this and its last step.
+const BUDGET: Duration = Duration::from_millis(6);
+/// Nor does it do more steps: one that waits for the GPU is over at once.
+const MOST_STEPS: usize = 32;
 
 /// How far a job is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -147,10 +154,15 @@ impl Lane {
         state.waiting.is_empty() && state.running.is_none()
     }
 
-    /// What jobs have told since the last call. Where the lane has no thread, a step is done first.
+    /// What jobs have told since the last call. Where the lane has no thread, some steps are done first.
     pub fn news(&mut self) -> Vec<News> {
         if let Some((bench, job)) = &mut self.own {
-            step(&self.shared, bench, job);
+            let start = Instant::now();
+            for _ in 0..MOST_STEPS {
+                if !step(&self.shared, bench, job) || start.elapsed() > BUDGET {
+                    break;
+                }
+            }
         }
         self.news.try_iter().collect()
     }

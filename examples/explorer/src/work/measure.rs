@@ -19,6 +19,14 @@ impl Measure {
     pub fn new(shot: Shot, size: [u32; 2], of: usize) -> Self {
         Self { shot, size, done: 0, of }
     }
+
+    fn progress(&self) -> Step {
+        Step::Continue(Progress {
+            what: "measuring".into(),
+            done: self.done,
+            of: self.of,
+        })
+    }
 }
 
 impl Job for Measure {
@@ -27,6 +35,9 @@ impl Job for Measure {
     }
 
     fn step(&mut self, bench: &mut Bench, _: &AtomicBool, tell: &mut dyn FnMut(News)) -> Step {
+        if bench.is_drawing() {
+            return self.progress();
+        }
         match paint(bench, &self.shot, self.size) {
             Ok(painted) => tell(News::Painted(Box::new(painted))),
             Err(error) => {
@@ -38,10 +49,6 @@ impl Job for Measure {
         if self.done >= self.of {
             return Step::Break(());
         }
-        Step::Continue(Progress {
-            what: "measuring".into(),
-            done: self.done,
-            of: self.of,
-        })
+        self.progress()
     }
 }

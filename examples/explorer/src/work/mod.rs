@@ -1,6 +1,6 @@
 //! What takes longer than a frame of the window is done beside it: jobs, and the lanes that they are done in.
 //!
-//! A job is done in steps. Natively a lane has a thread that does them; on a web page, where there are none, each frame of the page does one. A lane
+//! A job is done in steps. Natively a lane has a thread that does them; on a web page, where there are none, each frame of the page does some. A lane
 //! holds one job of a kind at most: a newer one takes the place of one that waits, and ends one that runs after its step. So nothing piles up while
 //! somebody turns a knob.
 

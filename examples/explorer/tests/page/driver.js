@@ -1,6 +1,7 @@
 // Drives the page for tests/page.rs, which puts the links here and hears what is said.
 "use strict";
 const LINKS = /*LINKS*/[];
+const FILES = /*FILES*/[];
 const errors = [];
 {
     const complain = console.error;
@@ -66,6 +67,27 @@ async function drag(x, y, by) {
     mouse("pointerup", x + by, y);
 }
 
+function drop(files) {
+    const given = new DataTransfer();
+    files.forEach(file => given.items.add(file));
+    document.getElementById("canvas").dispatchEvent(new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer: given }));
+}
+
+// A key with Ctrl.
+function press(key) {
+    const event = { bubbles: true, cancelable: true, key, code: "Key" + key.toUpperCase(), ctrlKey: true };
+    const canvas = document.getElementById("canvas");
+    canvas.dispatchEvent(new KeyboardEvent("keydown", event));
+    canvas.dispatchEvent(new KeyboardEvent("keyup", event));
+}
+
+// The next download, which nobody gets to see.
+const download = () => new Promise(resolve => {
+    HTMLAnchorElement.prototype.click = async function () {
+        resolve({ name: this.download, text: await (await fetch(this.href)).text() });
+    };
+});
+
 (async () => {
     try {
         const said = () => document.getElementById("said").textContent;
@@ -84,6 +106,14 @@ async function drag(x, y, by) {
         now = await changed(now);
         while (location.hash === address) await sleep(50);
         await tell({ colour: now });
+        const files = await Promise.all(FILES.map(async name => new File([await (await fetch("/files/" + name)).blob()], name)));
+        drop(files);
+        now = await changed(now);
+        await tell({ colour: now });
+        const saved = download();
+        press("s");
+        const { name, text } = await saved;
+        await tell({ saved: name, same: text === await files[0].text() });
     } catch (error) {
         await tell({ error: String(error?.stack ?? error) });
     }
