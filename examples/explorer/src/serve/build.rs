@@ -189,7 +189,7 @@ mod tests {
         };
         let answer = |path: &str| {
             let response = site.respond(path);
-            (response.status, response.kind.to_owned(), response.body.to_vec())
+            (response.status, response.kind.into_owned(), response.body.to_vec())
         };
         assert_eq!(answer("/"), (200, "text/html".into(), b"page".to_vec()));
         assert_eq!(answer("/?x#y"), answer("/index.html"));
