@@ -1,5 +1,6 @@
 //! The explorer, in a window.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -9,6 +10,7 @@ use eframe::egui;
 use explorer::document::Document;
 use explorer::files::{Kept, Modules, state_file};
 use explorer::{App, Start, scenes};
+use shadewright_runtime::gpu::Gpu;
 use shadewright_runtime::image::write_atomically;
 use shadewright_runtime::scene::SceneFile;
 
@@ -42,15 +44,28 @@ fn main() -> ExitCode {
     env_logger::init();
     let options = Options::parse();
     let result = match options.command {
-        Some(Command::Serve { port }) => explorer::serve::run(port),
+        Some(Command::Serve { port }) => explorer::serve::run(port).map_err(Failure::from),
         None => run(&options),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
-            log::error!("{message}");
-            ExitCode::FAILURE
+        Err(Failure { status, message }) => {
+            // With stderr closed there is nobody to tell.
+            let _ = writeln!(std::io::stderr(), "{}", message.trim_end());
+            ExitCode::from(status)
         }
+    }
+}
+
+/// Why it ends, and with which status: those of the command, see spec/command.md.
+struct Failure {
+    status: u8,
+    message: String,
+}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Self {
+        Self { status: 1, message }
     }
 }
 
@@ -78,6 +93,9 @@ fn start(options: &Options) -> Result<Start, String> {
         },
     };
     if let Some(folder) = &options.modules {
+        if !folder.is_dir() {
+            return Err(format!("{} is no folder", folder.display()));
+        }
         kept.modules = Some(folder.clone());
     }
     let own = kept.modules.clone().filter(|folder| folder.is_dir());
@@ -109,8 +127,13 @@ fn last(kept: &mut Kept, state_file: Option<&Path>) -> Option<Document> {
     restored.map_err(|report| log::warn!("{}", report.render())).ok()
 }
 
-fn run(options: &Options) -> Result<(), String> {
+fn run(options: &Options) -> Result<(), Failure> {
     let start = start(options)?;
+    // eframe panics where there is no adapter; this says what to install.
+    drop(Gpu::headless().map_err(|error| Failure {
+        status: 3,
+        message: error.to_string(),
+    })?);
     let mut native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_inner_size([1440.0, 900.0])
@@ -127,5 +150,5 @@ fn run(options: &Options) -> Result<(), String> {
             Ok(Box::new(app))
         }),
     )
-    .map_err(|error| error.to_string())
+    .map_err(|error| Failure::from(format!("no window can be opened: {error}")))
 }

@@ -228,6 +228,8 @@ fn the_truth_is_drawn_in_the_background() {
     click(&mut explorer, "Draw the reference in the background");
     until(&mut explorer, "stopped", |app| !app.lanes.long.is_busy("reference"));
     assert!(!explorer.state().compare.is_refining);
+    let divisor = explorer.state().compare.refined.as_ref().map(|refined| refined.divisor);
+    assert!(divisor.is_some_and(|divisor| divisor > 1), "it went on to the end: {divisor:?}");
 }
 
 /// The same without waiting for what else is done.
