@@ -113,6 +113,7 @@ fn the_arrows_go_one_way() {
             "explorer",
             &[
                 "shadewright-compiler",
+                "shadewright-evaluate",
                 "shadewright-modules",
                 "shadewright-report",
                 "shadewright-runtime",

@@ -1,6 +1,7 @@
 //! What a person waits for: from a choice to its picture, from the start to the first one, and what memory does over a thousand choices.
 //!
-//! `cargo bench -p explorer` prints a table; `-- --write FILE` puts it there as well, `-- --scene NAME` takes another example. Needs a GPU or a software driver, and no display.
+//! `cargo bench -p explorer` prints a page; `-- --write FILE` (from the workspace's root) puts it there as well, `-- --scene NAME` takes other examples, by
+//! commas. Needs a GPU or a software driver, and no display.
 
 #![allow(
     clippy::unwrap_used,
@@ -9,6 +10,7 @@
 )]
 
 use std::fmt::Write;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use eframe::egui::Vec2;
@@ -18,6 +20,7 @@ use explorer::work::Times;
 use explorer::{App, Start, scenes};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
+use shadewright_runtime::gpu::Gpu;
 
 /// Switches that are timed.
 const SWITCHES: usize = 200;
@@ -25,6 +28,17 @@ const SWITCHES: usize = 200;
 const MANY: usize = 1000;
 /// Size of the pictures that are timed.
 const PICTURE: [f32; 2] = [640.0, 480.0];
+
+/// What is said before the figures.
+const HEAD: &str = "# What a choice takes
+
+Made by `cargo bench -p explorer --bench switches -- --scene sphere,first --write spec/explorer-figures.md`.
+
+The explorer runs without a window, on the device that it would have there. A switch puts a random module that fits into a random place of the scene
+(geometry, materials, lights, display) and stays: the next one is made on top of it. One that the compiler refuses is taken back and not counted. The time of a
+switch ends with the frame of the window that shows the picture; its parts are those of the picture that was then shown, so a part may be smaller than what
+the lane did meanwhile. A software driver compiles a pipeline's code when it first draws, so there the frame's time is mostly its compiler's.
+";
 
 /// One choice.
 struct Switch {
@@ -102,7 +116,7 @@ impl Explorer {
         let start = Instant::now();
         app.edit("switch", |draft| choose(draft, &catalog, row, Some(module)));
         if !self.wait() {
-            self.harness.state_mut().document.undo();
+            self.harness.state_mut().undo();
             self.wait();
             return None;
         }
@@ -128,42 +142,34 @@ fn memory() -> Option<f64> {
     Some(resident * 4096.0 / f64::from(1 << 20))
 }
 
-fn main() {
-    let arguments: Vec<String> = std::env::args().collect();
-    let given = |name: &str| {
-        arguments
-            .iter()
-            .position(|argument| argument == name)
-            .and_then(|at| arguments.get(at + 1))
-    };
-    let example = given("--scene").map_or("sphere", String::as_str);
+/// Times of switches in an example.
+fn timed(page: &mut String, example: &str) {
     let (mut explorer, first) = Explorer::open(example, PICTURE);
     let mut switches = Vec::new();
     while switches.len() < SWITCHES {
         switches.extend(explorer.switch());
     }
-    let gpu = explorer.harness.state().gpu.name();
-    let mut table = format!(
-        "{gpu}; the scene `{example}` at {} x {}, {SWITCHES} random choices of modules, one after the other; ms\n\n| | median | 90 % | worst |\n|-|-|-|-|\n",
-        PICTURE[0], PICTURE[1]
+    let [width, height] = explorer.harness.state().viewport.painted.as_ref().unwrap().frame.size;
+    let _ = writeln!(
+        page,
+        "## `{example}`, {width} x {height}\n\n| {SWITCHES} switches, ms | median | 90 % | worst |\n|-|-|-|-|"
     );
     let of = |part: fn(&Switch) -> Duration| switches.iter().map(part).collect::<Vec<_>>();
-    row(&mut table, "from the choice to the picture on the screen", of(|s| s.all));
-    row(&mut table, "scene to recipes", of(|s| s.times.derive));
-    row(&mut table, "link", of(|s| s.times.cpu.link));
-    row(&mut table, "pipelines", of(|s| s.times.cpu.pipelines));
-    row(&mut table, "recording", of(|s| s.times.cpu.record));
-    row(
-        &mut table,
-        "frame on the GPU, with what its driver compiles then",
-        of(|s| s.times.gpu),
-    );
+    row(page, "from the choice to its picture in the window", of(|s| s.all));
+    row(page, "the scene's text to recipes and values", of(|s| s.times.derive));
+    row(page, "link", of(|s| s.times.cpu.link));
+    row(page, "pipelines", of(|s| s.times.cpu.pipelines));
+    row(page, "recording", of(|s| s.times.cpu.record));
+    row(page, "frame on the GPU, with what its driver compiles then", of(|s| s.times.gpu));
     let _ = writeln!(
-        table,
-        "\nFrom nothing (no device yet) to the first picture: {:.0} ms.",
+        page,
+        "\nFrom nothing, no device yet, to the first picture: {:.0} ms.\n",
         first.as_secs_f64() * 1e3
     );
-    drop(explorer);
+}
+
+/// Memory over switches.
+fn watched(page: &mut String) {
     // Small pictures: what is kept is the same.
     let (mut explorer, _) = Explorer::open("sphere", [64.0, 48.0]);
     let mut resident = Vec::new();
@@ -176,16 +182,29 @@ fn main() {
     }
     let said: Vec<String> = resident.iter().map(|mebibytes| format!("{mebibytes:.0}")).collect();
     let _ = writeln!(
-        table,
-        "\nResident memory after 100, 200 ... {MANY} choices, MiB: {}.",
+        page,
+        "## Memory\n\nResident after 100, 200 ... {MANY} switches in `sphere`, MiB: {}.",
         said.join(", ")
     );
-    println!("{table}");
-    if let Some(file) = arguments
-        .iter()
-        .position(|argument| argument == "--write")
-        .and_then(|at| arguments.get(at + 1))
-    {
-        std::fs::write(file, &table).unwrap();
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let given = |name: &str| {
+        let at = arguments.iter().position(|argument| argument == name)?;
+        arguments.get(at + 1)
+    };
+    let examples = given("--scene").map_or("sphere", String::as_str);
+    let gpu = Gpu::headless().unwrap().name();
+    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+    let mut page = format!("{HEAD}\nThis run: {gpu}, {profile} profile.\n\n");
+    for example in examples.split(',') {
+        timed(&mut page, example);
+    }
+    watched(&mut page);
+    println!("{page}");
+    if let Some(file) = given("--write") {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        std::fs::write(root.join(file), &page).unwrap();
     }
 }

@@ -3,6 +3,7 @@
 mod compare;
 mod files;
 mod news;
+mod opened;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,9 +16,10 @@ use shadewright_runtime::frame::Frame;
 use shadewright_runtime::gpu::Gpu;
 use shadewright_runtime::scene::{Scene, SceneFile};
 
+use opened::Others;
 use web_time::Instant;
 
-use crate::compare::Compare;
+use crate::compare::{Compare, Pin};
 use crate::document::{Document, Draft, step_path};
 use crate::files::{Dialog, Kept, Modules};
 use crate::panels::{self, Tabs, TreeState, Viewport};
@@ -28,6 +30,8 @@ use crate::work::{Bench, Lane, Shot};
 pub struct Start {
     /// What is edited.
     pub document: Document,
+    /// Its pins.
+    pub pins: Vec<Pin>,
     /// From where modules come.
     pub library: Arc<dyn Library>,
     /// What was kept of the last time.
@@ -41,6 +45,7 @@ impl Start {
     pub fn with(scene: SceneFile) -> Self {
         Self {
             document: Document::new(scene),
+            pins: Vec::new(),
             library: shadewright_modules::library(),
             kept: Kept::default(),
             state_file: None,
@@ -104,6 +109,7 @@ pub struct App {
     /// The user's folder of modules.
     pub modules: Option<Modules>,
     pub(crate) context: egui::Context,
+    others: Others,
     /// Files that people have given to the page.
     #[cfg(target_arch = "wasm32")]
     pub(crate) inbox: crate::files::web::Inbox,
@@ -126,7 +132,9 @@ impl App {
             let context = context.clone();
             Lane::new(name, Bench::new(gpu.clone()), move || context.request_repaint())
         };
+        let mut kept = start.kept;
         let mut app = Self {
+            others: Others::restored(std::mem::take(&mut kept.earlier), start.document.scene().files()),
             lanes: Lanes {
                 view: lane("view"),
                 desk: lane("desk"),
@@ -145,12 +153,12 @@ impl App {
             tree: TreeState::default(),
             compare: Compare::default(),
             tabs: Tabs {
-                shown: start.kept.tab,
+                shown: kept.tab,
                 ..Tabs::default()
             },
             dialog: None,
-            keeping: (start.kept.clone(), None),
-            kept: start.kept,
+            keeping: (Kept::default(), None),
+            kept,
             modules: None,
             context: context.clone(),
             #[cfg(target_arch = "wasm32")]
@@ -158,6 +166,7 @@ impl App {
             state_file: start.state_file,
             seen: None,
         };
+        app.compare.pins.all = start.pins;
         if !app.kept.selected.is_empty() {
             app.selected.clone_from(&app.kept.selected);
         }
@@ -211,18 +220,9 @@ impl App {
         Some((*material?.recipe).clone())
     }
 
-    /// Edits another scene from now on. The one before is kept where it was saved only.
+    /// Edits another scene from now on.
     pub fn open(&mut self, scene: SceneFile) {
         self.open_document(Document::new(scene));
-    }
-
-    /// The same, with what was switched off in it.
-    pub fn open_document(&mut self, document: Document) {
-        self.message = format!("opened {}", document.state().name);
-        self.document = document;
-        self.seen = None;
-        self.viewport.forget();
-        self.compare.forget(&self.render_state);
     }
 
     /// Links from another library, or the same one after an edit.

@@ -1,7 +1,7 @@
 //! A scene as the fragment of a page's address: an example by its name, and where it was changed with all of its text. So a link means the same when
 //! the example is another one day.
 //!
-//! `scene=first&at=materials.copper&state=...`: the last part is JSON, compressed (RFC 1951), in the alphabet for addresses (RFC 4648, 5).
+//! `scene=first&at=materials.copper&tab=Pareto&show=error&state=...`: the last part is JSON, compressed (RFC 1951), in the alphabet for addresses (RFC 4648, 5).
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use shadewright_compiler::limits;
 use shadewright_runtime::scene::Files;
 
+use crate::compare::Mode;
 use crate::document::{Document, Parked, State};
 use crate::panels::Tab;
 use crate::scenes;
@@ -26,10 +27,19 @@ const EFFORT: u8 = 9;
 pub struct Linked {
     /// The scene.
     pub document: Document,
-    /// Path of the row that is selected, if one is named.
-    pub selected: Option<String>,
+    /// What of it is looked at.
+    pub look: Look,
+}
+
+/// What of a scene is looked at.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Look {
+    /// Path of the row that is selected; empty if none is named.
+    pub selected: String,
     /// The tab that is shown.
     pub tab: Tab,
+    /// What the viewport shows. A pin is in no link: it is the reference that the scene is compared with.
+    pub mode: Mode,
 }
 
 /// What is changed of a scene.
@@ -42,13 +52,16 @@ struct Changed {
 }
 
 /// The fragment, without its `#`.
-pub fn write(state: &State, selected: &str, tab: Tab) -> String {
+pub fn write(state: &State, look: &Look) -> String {
     let mut fragment = format!("scene={}", escaped(&state.name));
-    if !selected.is_empty() {
-        fragment += &format!("&at={}", escaped(selected));
+    if !look.selected.is_empty() {
+        fragment += &format!("&at={}", escaped(&look.selected));
     }
-    if tab != Tab::default() {
-        fragment += &format!("&tab={}", escaped(tab.name()));
+    if look.tab != Tab::default() {
+        fragment += &format!("&tab={}", escaped(look.tab.name()));
+    }
+    if look.mode != Mode::default() {
+        fragment += &format!("&show={}", look.mode.name().to_lowercase());
     }
     let is_example = scenes::find(&state.name).is_some_and(|example| *example.text == *state.text);
     if !is_example || !state.parked.is_empty() {
@@ -73,14 +86,18 @@ pub fn read(fragment: &str, files: &Files) -> Result<Option<Linked>, String> {
         .trim_start_matches('#')
         .split('&')
         .filter_map(|field| field.split_once('='));
-    let (mut name, mut at, mut tab, mut packed) = (None, None, Tab::default(), None);
+    let (mut name, mut look, mut packed) = (None, Look::default(), None);
     for (key, value) in fields {
         match key {
             "scene" => name = Some(unescaped(value)),
-            "at" => at = Some(unescaped(value)),
+            "at" => look.selected = unescaped(value),
             "tab" => {
                 let named = unescaped(value);
-                tab = Tab::ALL.into_iter().find(|tab| tab.name() == named).unwrap_or_default();
+                look.tab = Tab::ALL.into_iter().find(|tab| tab.name() == named).unwrap_or_default();
+            }
+            "show" => {
+                let is_named = |mode: &Mode| mode.name().eq_ignore_ascii_case(value);
+                look.mode = Mode::ALL.into_iter().find(is_named).unwrap_or_default();
             }
             "state" => packed = Some(value),
             _ => {}
@@ -104,11 +121,7 @@ pub fn read(fragment: &str, files: &Files) -> Result<Option<Linked>, String> {
         parked: changed.parked,
     };
     let document = Document::restored(state, saved, files).map_err(|report| crate::work::reason(&report))?;
-    Ok(Some(Linked {
-        document,
-        selected: at,
-        tab,
-    }))
+    Ok(Some(Linked { document, look }))
 }
 
 fn unpacked(packed: &str) -> Result<Changed, String> {
@@ -159,8 +172,8 @@ mod tests {
         Document::new(scenes::find(name).unwrap().scene().unwrap())
     }
 
-    fn again(document: &Document, selected: &str) -> Linked {
-        let fragment = write(document.state(), selected, Tab::default());
+    fn again(document: &Document, look: &Look) -> Linked {
+        let fragment = write(document.state(), look);
         let usual = |c: char| c.is_ascii_alphanumeric() || "-._~/=&%".contains(c);
         assert!(fragment.chars().all(usual), "a browser would write it otherwise: {fragment}");
         read(&format!("#{fragment}"), &scenes::files()).unwrap().unwrap()
@@ -171,10 +184,15 @@ mod tests {
     fn links_bring_everything_back() {
         for example in scenes::ALL {
             let plain = document(example.name);
-            assert_eq!(write(plain.state(), "", Tab::default()), format!("scene={}", example.name));
-            let read = again(&plain, "materials[\"red glaze\"].brdf & more % 100");
-            assert_eq!(read.document.state(), plain.state());
-            assert_eq!(read.selected.unwrap(), "materials[\"red glaze\"].brdf & more % 100");
+            assert_eq!(write(plain.state(), &Look::default()), format!("scene={}", example.name));
+            for (tab, mode) in Tab::ALL.into_iter().zip(Mode::ALL.into_iter().cycle()) {
+                let selected = "materials[\"red glaze\"].brdf & more % 100".to_owned();
+                let look = Look { selected, tab, mode };
+                let read = again(&plain, &look);
+                assert_eq!(read.document.state(), plain.state());
+                assert_eq!(read.look, look);
+            }
+            let read = again(&plain, &Look::default());
             assert!(!read.document.is_changed());
         }
         let mut changed = document("first");
@@ -183,16 +201,16 @@ mod tests {
             .unwrap();
         changed.edit("test", |draft| draft.remove(&[], "lights", 1, true)).unwrap();
         assert_eq!(changed.state().parked.len(), 1);
-        let read = again(&changed, "");
-        assert_eq!((read.document.state(), read.selected), (changed.state(), None));
+        let read = again(&changed, &Look::default());
+        assert_eq!((read.document.state(), read.look), (changed.state(), Look::default()));
         assert!(read.document.is_changed());
-        let length = write(changed.state(), "", Tab::default()).len();
+        let length = write(changed.state(), &Look::default()).len();
         assert!(length < changed.state().text.len() / 2, "{length} letters");
 
         let own =
             shadewright_runtime::scene::SceneFile::parse("Füße/mine.scene.ron", scenes::ALL[1].text, std::path::Path::new("")).unwrap();
         let own = Document::new(own);
-        assert_eq!(again(&own, "").document.state(), own.state());
+        assert_eq!(again(&own, &Look::default()).document.state(), own.state());
         assert!(read_error("scene=nonsense").contains("no example `nonsense`"));
         assert!(super::read("", &scenes::files()).unwrap().is_none());
         assert!(super::read("#utm_source=x&nonsense", &scenes::files()).unwrap().is_none());
@@ -209,7 +227,7 @@ mod tests {
         changed
             .edit("test", |draft| draft.set(&[], "background", "(0.0, 1.0, 2.0)"))
             .unwrap();
-        let whole = write(changed.state(), "camera", Tab::default());
+        let whole = write(changed.state(), &Look::default());
         let begin = whole.find("state=").unwrap() + "state=".len();
         for end in begin..whole.len() {
             assert!(read_error(&whole[..end]).contains("damaged"), "{end}");

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use clap::{Parser, Subcommand};
 use eframe::egui;
+use explorer::compare::Pin;
 use explorer::document::Document;
 use explorer::files::{Kept, Modules, state_file};
 use explorer::{App, Start, scenes};
@@ -69,28 +70,39 @@ impl From<String> for Failure {
     }
 }
 
+fn example(example: &scenes::Example) -> Result<SceneFile, String> {
+    example.scene().map_err(|report| report.render())
+}
+
+/// An example or a file.
+fn named(asked: &Path, kept: &mut Kept) -> Result<Document, String> {
+    if let Some(found) = scenes::find(&asked.to_string_lossy()) {
+        return Ok(Document::new(example(found)?));
+    }
+    let path = std::path::absolute(asked).map_err(|error| error.to_string())?;
+    let scene = SceneFile::read(&path).map_err(|report| report.render())?;
+    kept.remember(&path);
+    Ok(Document::new(scene.with_files(scenes::files())))
+}
+
 /// With what to begin: what is asked for, else what was edited last, else the first example.
 fn start(options: &Options) -> Result<Start, String> {
     let state_file = if options.fresh { None } else { state_file() };
     let mut kept = state_file.as_deref().map(Kept::read).unwrap_or_default();
-    let example = |example: &scenes::Example| example.scene().map_err(|report| report.render());
-    let document = match &options.scene {
-        Some(asked) => match scenes::find(&asked.to_string_lossy()) {
-            Some(found) => Document::new(example(found)?),
-            None => {
-                let path = std::path::absolute(asked).map_err(|error| error.to_string())?;
-                kept.remember(&path);
-                Document::new(
-                    SceneFile::read(&path)
-                        .map_err(|report| report.render())?
-                        .with_files(scenes::files()),
-                )
-            }
-        },
-        None => match last(&mut kept, state_file.as_deref()) {
-            Some(document) => document,
-            None => Document::new(example(&scenes::ALL[0])?),
-        },
+    let kept_on = match &options.scene {
+        Some(_) => None,
+        None => last(&mut kept, state_file.as_deref()),
+    };
+    let (document, pins) = match (kept_on, &options.scene) {
+        (Some(last), _) => last,
+        (None, asked) => {
+            kept.put_aside();
+            let document = match asked {
+                Some(asked) => named(asked, &mut kept)?,
+                None => Document::new(example(&scenes::ALL[0])?),
+            };
+            (document, Vec::new())
+        }
     };
     if let Some(folder) = &options.modules {
         if !folder.is_dir() {
@@ -106,25 +118,28 @@ fn start(options: &Options) -> Result<Start, String> {
     }
     Ok(Start {
         document,
+        pins,
         library: own.as_deref().map_or_else(shadewright_modules::library, Modules::library),
         kept,
         state_file,
     })
 }
 
-/// What was edited last. Where it may have ended the program, it is put aside.
-fn last(kept: &mut Kept, state_file: Option<&Path>) -> Option<Document> {
-    let state = kept.state.take()?;
-    if kept.starting {
-        let aside = state_file?.with_file_name("aside.scene.ron");
-        match write_atomically(&aside, state.text.as_bytes()) {
-            Ok(()) => kept.remember(&aside),
-            Err(error) => log::error!("{error}"),
+/// What was edited last. Where it may have ended the program, or cannot be read any more, it is put aside.
+fn last(kept: &mut Kept, state_file: Option<&Path>) -> Option<(Document, Vec<Pin>)> {
+    let work = kept.work.as_ref()?;
+    if !kept.starting {
+        match Document::restored(work.state.clone(), Arc::clone(&work.saved), &scenes::files()) {
+            Ok(document) => return Some((document, work.pins.clone())),
+            Err(report) => log::warn!("{}", report.render()),
         }
-        return None;
     }
-    let restored = Document::restored(state, Arc::clone(&kept.saved), &scenes::files());
-    restored.map_err(|report| log::warn!("{}", report.render())).ok()
+    let aside = state_file?.with_file_name("aside.scene.ron");
+    match write_atomically(&aside, work.state.text.as_bytes()) {
+        Ok(()) => kept.remember(&aside),
+        Err(error) => log::error!("{error}"),
+    }
+    None
 }
 
 fn run(options: &Options) -> Result<(), Failure> {

@@ -12,7 +12,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-use explorer::panels::Tab;
+use explorer::link::Look;
 use explorer::serve::{BuildError, Response, Site, build, serve};
 use explorer::{link, scenes};
 use serde_json::Value;
@@ -47,7 +47,7 @@ fn changed(example: &str, path: &str, value: &str) -> String {
     let scene = scenes::find(example).unwrap().scene().unwrap();
     let mut document = explorer::document::Document::new(scene);
     document.edit("test", |draft| draft.set(&[], path, value)).unwrap();
-    link::write(document.state(), "", Tab::default())
+    link::write(document.state(), &Look::default())
 }
 
 /// What is dropped on the page: a scene, and a picture that it names in a folder that the page does not know.
@@ -124,9 +124,11 @@ fn the_page_draws_and_follows() {
         }
         Err(failed) => panic!("{failed}"),
     };
-    // Red light on the sphere; then as it was.
+    // Red light on the sphere; as it was; its errors; as it was.
     let links = [
         changed("sphere", "lights[0].fields.color", "(1.0, 0.0, 0.0)"),
+        "scene=sphere".to_owned(),
+        "scene=sphere&show=error".to_owned(),
         "scene=sphere".to_owned(),
     ];
     let (port, said) = serve_driven(site, &links);
@@ -174,6 +176,11 @@ fn the_page_draws_and_follows() {
     let red = hear("another light");
     assert!(differ(colour(&red), colour(&first)) > 4.0, "{first} and {red}");
     let again = hear("the first link again");
+    assert!(differ(colour(&again), colour(&first)) < 2.0, "{first} and {again}");
+    let errors = hear("errors against the truth");
+    assert!(errors["address"].as_str().unwrap().contains("show=error"), "{errors}");
+    assert!(differ(colour(&errors), colour(&first)) > 4.0, "{first} and {errors}");
+    let again = hear("no errors again");
     assert!(differ(colour(&again), colour(&first)) < 2.0, "{first} and {again}");
     let turned = hear("the camera, turned by the mouse");
     let address = turned["address"].as_str().unwrap();

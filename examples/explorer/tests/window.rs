@@ -105,7 +105,7 @@ fn a_window_is_driven_and_killed() {
     until("a picture", || colours(&display.screenshot(), middle) > 200);
     until("the state of the first picture", || !Kept::read(&file).starting && file.exists());
     let camera = || {
-        let text = Kept::read(&file).state.map(|state| state.text).unwrap_or_default();
+        let text = Kept::read(&file).work.map(|work| work.state.text).unwrap_or_default();
         text.lines().find(|line| line.contains("camera")).unwrap_or_default().to_owned()
     };
     let before = (camera(), display.screenshot());
@@ -128,5 +128,5 @@ fn a_window_is_driven_and_killed() {
     let _again = display.explorer(folder.path(), &[]);
     until("the picture again", || colours(&display.screenshot(), middle) > 200);
     let kept = Kept::read(&file);
-    assert_eq!((camera(), kept.state), (turned, shown.state));
+    assert_eq!((camera(), kept.work), (turned, shown.work));
 }

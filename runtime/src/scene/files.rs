@@ -85,7 +85,7 @@ impl fmt::Debug for Files {
         let mut shown = f.debug_struct("Files");
         shown
             .field("memory", &names)
-            .field("disk", &self.source.disk)
+            .field("or_disk", &self.source.disk)
             .finish_non_exhaustive()
     }
 }

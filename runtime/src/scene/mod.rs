@@ -104,7 +104,14 @@ impl SceneFile {
 
     /// What stands at a path, as it is written; `None` where nothing does.
     pub fn get(&self, path: &str) -> Option<&str> {
-        path::find(&self.parsed.file.text, path)
+        let text = &self.parsed.file.text;
+        text.get(path::find(text, path)?)
+    }
+
+    /// Where in the file a value begins: `first.scene.ron:12:5`. `None` where the text does not say it.
+    pub fn place(&self, path: &str) -> Option<String> {
+        let file = &self.parsed.file;
+        Some(file.place(path::find(&file.text, path)?.start))
     }
 
     /// The scene without the field, entry or element at a path.

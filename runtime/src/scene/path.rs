@@ -111,11 +111,11 @@ fn is_there(text: &str, path: &str) -> bool {
     find(text, path).is_some()
 }
 
-/// What stands at the path, as it is written; `None` where nothing does.
-pub fn find<'t>(text: &'t str, path: &str) -> Option<&'t str> {
+/// Where in the text stands what the path leads to; `None` where nothing does.
+pub fn find(text: &str, path: &str) -> Option<Range<usize>> {
     let parts = parse(path).ok()?;
     let places = Locator::new(text);
-    text.get(places.find(&steps_of(text, &places, &parts))?)
+    places.find(&steps_of(text, &places, &parts))
 }
 
 fn steps_of<'a>(text: &str, places: &Locator, parts: &'a Parts) -> Vec<Step<'a>> {
@@ -335,7 +335,8 @@ mod tests {
     /// Catches a neighbour that goes along, a comma that stays without its element, and an element that is found under another's path.
     #[test]
     fn values_are_found_and_removed() {
-        assert_eq!(find(TEXT, "lights[lamp].fields.intensity"), Some("\"800 lm\""));
+        let found = find(TEXT, "lights[lamp].fields.intensity").unwrap();
+        assert_eq!(&TEXT[found], "\"800 lm\"");
         assert_eq!(find(TEXT, "lights[2]"), None);
         assert_eq!(find(TEXT, "["), None);
         let without = |path: &str| {

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use eframe::egui;
 use explorer::document::State;
-use explorer::panels::Tab;
+use explorer::link::Look;
 use explorer::{App, link};
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast, JsValue};
@@ -19,8 +19,8 @@ pub struct Address {
     window: Window,
     /// The fragment as it was last seen or written.
     known: String,
-    /// What it was written from: the document, the row that is selected, the tab.
-    shown: Option<(State, String, Tab)>,
+    /// What it was written from.
+    shown: Option<(State, Look)>,
     written: Instant,
 }
 
@@ -55,9 +55,7 @@ impl Address {
             }
             self.known = there;
         }
-        let is_there = |(state, selected, tab): &(State, String, Tab)| {
-            *state == *app.document.state() && *selected == app.selected && *tab == app.tabs.shown
-        };
+        let is_there = |(state, seen): &(State, Look)| *state == *app.document.state() && *seen == look(app);
         // A slider that is being moved changes it when it is let go.
         if app.document.is_open() || self.shown.as_ref().is_some_and(is_there) {
             return;
@@ -67,7 +65,7 @@ impl Address {
             return context.request_repaint_after(PAUSE - waited);
         }
         let now = shown(app);
-        let fragment = format!("#{}", link::write(&now.0, &now.1, now.2));
+        let fragment = format!("#{}", link::write(&now.0, &now.1));
         if fragment != self.known {
             self.write(&fragment, app);
         }
@@ -86,8 +84,16 @@ impl Address {
     }
 }
 
-fn shown(app: &App) -> (State, String, Tab) {
-    (app.document.state().clone(), app.selected.clone(), app.tabs.shown)
+fn shown(app: &App) -> (State, Look) {
+    (app.document.state().clone(), look(app))
+}
+
+fn look(app: &App) -> Look {
+    Look {
+        selected: app.selected.clone(),
+        tab: app.tabs.shown,
+        mode: app.compare.mode,
+    }
 }
 
 /// Opens what a fragment says; nothing where it says nothing.
@@ -97,10 +103,11 @@ fn shown(app: &App) -> (State, String, Tab) {
 fn open(app: &mut App, fragment: &str) -> Result<(), String> {
     if let Some(linked) = link::read(fragment, app.document.scene().files())? {
         app.open_document(linked.document);
-        if let Some(selected) = linked.selected {
-            app.selected = selected;
+        if !linked.look.selected.is_empty() {
+            app.selected = linked.look.selected;
         }
-        app.tabs.shown = linked.tab;
+        app.tabs.shown = linked.look.tab;
+        app.compare(linked.look.mode);
     }
     Ok(())
 }

@@ -29,6 +29,13 @@ impl App {
         self.edited(what, result);
     }
 
+    /// Shows the present scene alone or compared.
+    pub fn compare(&mut self, mode: Mode) {
+        self.compare.mode = mode;
+        // What is asked for is drawn.
+        self.compare.is_refining |= mode == Mode::Error || mode != Mode::Alone && self.compare.other == Other::Reference;
+    }
+
     /// Compares with something else, so that it is seen.
     pub fn compare_with(&mut self, other: Other) {
         self.compare.other = other;
@@ -79,6 +86,7 @@ impl App {
             files: self.document.scene().files().clone(),
             catalog: Arc::clone(&self.catalog),
             size: THUMBNAIL,
+            reading: None,
         });
         self.compare.pins.pictures.insert(id, Thumbnail::Asked);
     }
@@ -152,6 +160,7 @@ impl App {
             second,
             files: self.document.scene().files().clone(),
             catalog: Arc::clone(&self.catalog),
+            sent: None,
         });
         self.compare.asked.beside = Some(key);
     }

@@ -8,7 +8,7 @@ use web_time::Instant;
 
 use super::App;
 use crate::document::State;
-use crate::files::{Answer, Export, Keep, Kept, Modules, Purpose, Reload, save};
+use crate::files::{Answer, Export, Keep, Kept, Modules, Purpose, Reload, Work, save};
 
 /// What has changed is kept this long after it: not for every step of a slider.
 const PATIENCE: Duration = Duration::from_millis(300);
@@ -187,8 +187,8 @@ impl App {
 
     fn to_keep(&self, starting: bool) -> Kept {
         Kept {
-            state: Some(self.document.state().clone()),
-            saved: self.document.saved_text().clone(),
+            work: Some(Work::of(&self.document, &self.compare.pins.all)),
+            earlier: self.others.unsaved(),
             selected: self.selected.clone(),
             tab: self.tabs.shown,
             starting,

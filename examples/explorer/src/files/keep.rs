@@ -6,21 +6,33 @@ use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
 
-use crate::document::State;
+use crate::compare::Pin;
+use crate::document::{Document, State};
 use crate::panels::Tab;
 use crate::work::{Bench, Job, News, Step};
 
 /// Most files that are remembered.
 const MOST_RECENT: usize = 10;
 
+/// A scene that somebody works on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Work {
+    /// As it was left.
+    pub state: State,
+    /// The text that is on disk under its name.
+    pub saved: Arc<str>,
+    /// Its pins.
+    pub pins: Vec<Pin>,
+}
+
 /// What is kept.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Kept {
     /// The scene as it was left.
-    pub state: Option<State>,
-    /// The text that is on disk under its name.
-    pub saved: Arc<str>,
+    pub work: Option<Work>,
+    /// Scenes with something unsaved that were open before, the last one last.
+    pub earlier: Vec<Work>,
     /// Path of the row that was selected.
     pub selected: String,
     /// The tab that was shown.
@@ -62,6 +74,22 @@ pub fn state_file() -> Option<PathBuf> {
     None
 }
 
+impl Work {
+    /// A document with its pins.
+    pub fn of(document: &Document, pins: &[Pin]) -> Self {
+        Self {
+            state: document.state().clone(),
+            saved: Arc::clone(document.saved_text()),
+            pins: pins.to_vec(),
+        }
+    }
+
+    /// Whether something of it is nowhere else.
+    pub fn is_unsaved(&self) -> bool {
+        self.state.text != self.saved || !self.state.parked.is_empty() || !self.pins.is_empty()
+    }
+}
+
 impl Kept {
     /// What was kept; nothing where there is no such file, or it cannot be read.
     pub fn read(path: &Path) -> Self {
@@ -95,6 +123,11 @@ impl Kept {
     #[cfg(target_arch = "wasm32")]
     pub fn write(&self, _: &Path) -> Result<(), String> {
         Ok(())
+    }
+
+    /// Something else is begun with: what was left is to go back to.
+    pub fn put_aside(&mut self) {
+        self.earlier.extend(self.work.take().filter(Work::is_unsaved));
     }
 
     /// Puts a file before the others that are remembered.

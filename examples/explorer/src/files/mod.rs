@@ -12,6 +12,6 @@ pub(crate) mod web;
 pub use dialog::{Answer, Dialog, Purpose};
 pub use drop::{Found, Look};
 pub use export::Export;
-pub use keep::{Keep, Kept, state_file};
+pub use keep::{Keep, Kept, Work, state_file};
 pub use modules::{Modules, Reload};
 pub use save::save;

@@ -21,15 +21,15 @@ pub(super) fn menus(app: &mut App, ui: &mut egui::Ui) {
             files(app, ui);
         });
         ui.menu_button("Edit", |ui| {
-            let undo = app.document.can_undo().map(|what| format!("Undo {what}"));
+            let undo = app.can_undo().map(|what| format!("Undo {what}"));
             let shown = Button::new(undo.as_deref().unwrap_or("Undo")).shortcut_text("Ctrl+Z");
             if ui.add_enabled(undo.is_some(), shown).clicked() {
-                app.document.undo();
+                app.undo();
             }
-            let redo = app.document.can_redo().map(|what| format!("Redo {what}"));
+            let redo = app.can_redo().map(|what| format!("Redo {what}"));
             let shown = Button::new(redo.as_deref().unwrap_or("Redo")).shortcut_text("Ctrl+Shift+Z");
             if ui.add_enabled(redo.is_some(), shown).clicked() {
-                app.document.redo();
+                app.redo();
             }
         });
         ui.menu_button("View", |ui| {

@@ -26,9 +26,7 @@ pub(super) fn bar(app: &mut App, ui: &mut egui::Ui) {
                 let is_on = app.compare.mode == mode;
                 button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, &name));
                 if button.on_hover_text(mode.summary()).clicked() {
-                    app.compare.mode = mode;
-                    // What is asked for is drawn.
-                    app.compare.is_refining |= mode == Mode::Error || mode != Mode::Alone && app.compare.other == Other::Reference;
+                    app.compare(mode);
                 }
             }
             if matches!(app.compare.mode, Mode::Split | Mode::Difference) {

@@ -49,10 +49,10 @@ pub(super) fn take(app: &mut App, ui: &mut egui::Ui) {
         return;
     }
     if hit(ui, &REDO) || hit(ui, &REDO_TOO) {
-        app.document.redo();
+        app.redo();
     }
     if hit(ui, &UNDO) {
-        app.document.undo();
+        app.undo();
     }
     for (tab, key) in Tab::ALL.into_iter().zip(NUMBERS) {
         if hit(ui, &KeyboardShortcut::new(Modifiers::COMMAND, key)) {

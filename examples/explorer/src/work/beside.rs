@@ -8,8 +8,8 @@ use shadewright_runtime::frame::Targets;
 use shadewright_runtime::gpu::{Gpu, RuntimeError};
 use shadewright_runtime::scene::Files;
 
-use super::{Bench, Job, News, Shot, Step, paint};
-use crate::compare::{Beside, Drawn, Errors, Told, Truths, Values, with_camera_of};
+use super::{Bench, Job, News, Progress, Reading, Shot, Step, paint};
+use crate::compare::{Beside, Drawn, Errors, Told, Truths, with_camera_of};
 use crate::document::State;
 
 /// Draws the second picture, and reads the numbers of both.
@@ -24,23 +24,19 @@ pub struct DrawBeside {
     pub files: Files,
     /// The library.
     pub catalog: Arc<Catalog>,
+    /// What is drawn: `None` at first.
+    pub sent: Option<Sent>,
 }
 
-/// The linear values of a picture.
-///
-/// # Errors
-/// The GPU fails.
-pub fn values(gpu: &Gpu, targets: &Targets) -> Result<Values, RuntimeError> {
-    // Waits: a page of the web cannot.
-    let texels = targets.read_hdr(gpu)?;
-    Ok(Values {
-        size: [targets.hdr.width(), targets.hdr.height()],
-        texels,
-    })
+/// Pictures that are drawn, with those of their numbers that have not come.
+pub struct Sent {
+    beside: Beside,
+    first: Option<Reading>,
+    second: Option<Reading>,
 }
 
 impl DrawBeside {
-    fn draw(&self, bench: &mut Bench) -> Result<Beside, RuntimeError> {
+    fn draw(&self, bench: &mut Bench) -> Result<Sent, RuntimeError> {
         let second = match &self.second {
             None => None,
             Some((drawn, _, Some(targets))) => Some((drawn.clone(), targets.clone())),
@@ -53,23 +49,51 @@ impl DrawBeside {
                 Some((drawn.clone(), paint(bench, &shot, drawn.size)?.targets))
             }
         };
-        let mut beside = Beside {
-            first: self.first,
-            second,
-            first_values: None,
-            second_values: None,
-            errors: None,
+        let read = |targets: &Targets| Reading::start(bench.gpu(), targets);
+        let other = second.as_ref().filter(|_| self.values_of.is_some());
+        Ok(Sent {
+            first: self.values_of.as_ref().map(read).transpose()?,
+            second: other.map(|(_, targets)| read(targets)).transpose()?,
+            beside: Beside {
+                first: self.first,
+                second,
+                first_values: None,
+                second_values: None,
+                errors: None,
+            },
+        })
+    }
+
+    fn advance(&mut self, bench: &mut Bench) -> Result<Option<Beside>, RuntimeError> {
+        let mut sent = match self.sent.take() {
+            Some(sent) => sent,
+            None => self.draw(bench)?,
         };
-        if let Some(first) = &self.values_of {
-            let found = values(bench.gpu(), first)?;
-            if let Some((_, targets)) = &beside.second {
-                let truth = values(bench.gpu(), targets)?;
-                beside.errors = Errors::of(&found, &truth).map(Arc::new);
-                beside.second_values = Some(truth);
-            }
-            beside.first_values = Some(found);
+        if !sent.receive(bench.gpu())? {
+            self.sent = Some(sent);
+            return Ok(None);
         }
-        Ok(beside)
+        Ok(Some(sent.beside))
+    }
+}
+
+impl Sent {
+    /// Takes in what has come; whether that is all.
+    fn receive(&mut self, gpu: &Gpu) -> Result<bool, RuntimeError> {
+        let of = &mut self.beside;
+        for (reading, values) in [(&mut self.first, &mut of.first_values), (&mut self.second, &mut of.second_values)] {
+            if let Some(sent) = reading {
+                *values = sent.take(gpu)?;
+                if values.is_none() {
+                    return Ok(false);
+                }
+                *reading = None;
+            }
+        }
+        if let (Some(found), Some(truth)) = (&of.first_values, &of.second_values) {
+            of.errors = Errors::of(found, truth).map(Arc::new);
+        }
+        Ok(true)
     }
 }
 
@@ -79,8 +103,15 @@ impl Job for DrawBeside {
     }
 
     fn step(&mut self, bench: &mut Bench, _: &AtomicBool, tell: &mut dyn FnMut(News)) -> Step {
-        tell(News::Compare(match self.draw(bench) {
-            Ok(beside) => Told::Beside(Box::new(beside)),
+        tell(News::Compare(match self.advance(bench) {
+            Ok(Some(beside)) => Told::Beside(Box::new(beside)),
+            Ok(None) => {
+                return Step::Continue(Progress {
+                    what: "reading numbers".into(),
+                    done: 1,
+                    of: 2,
+                });
+            }
             Err(error) => failed(self.kind(), &error),
         }));
         Step::Break(())

@@ -10,13 +10,13 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use shadewright_compiler::Catalog;
-use shadewright_runtime::frame::Frame;
-use shadewright_runtime::gpu::{Gpu, RuntimeError};
+use shadewright_runtime::frame::{Frame, Targets};
+use shadewright_runtime::gpu::RuntimeError;
 use web_time::Instant;
 
-use super::beside::{failed, values};
-use super::{Bench, Job, News, Progress, Shot, Step, paint};
-use crate::compare::{Errors, Reference, Refined, Told, Truths, Values, reference};
+use super::beside::failed;
+use super::{Bench, Job, News, Progress, Reading, Shot, Step, paint};
+use crate::compare::{Errors, Reference, Refined, Told, Truths, reference};
 use strip::{Whole, can_be_cut, strip};
 
 /// Widths of a pixel, in the viewport's pixels.
@@ -47,10 +47,20 @@ struct Part {
     frame: Frame,
     can_be_cut: bool,
     /// The present scene in the same size.
-    found: Values,
+    found: Reading,
     whole: Whole,
-    /// Rows drawn.
+    /// Rows that are there.
     rows: u32,
+    /// The next ones, on their way.
+    strip: Option<Strip>,
+}
+
+/// Rows that are drawn.
+struct Strip {
+    since: Instant,
+    rows: u32,
+    targets: Targets,
+    reading: Reading,
 }
 
 impl Refine {
@@ -83,39 +93,47 @@ impl Refine {
         let frame = of.scene.frame(catalog, Some(size))?;
         Ok(Part {
             can_be_cut: can_be_cut(catalog, &frame),
-            found: values(bench.gpu(), &found.targets)?,
+            found: Reading::start(bench.gpu(), &found.targets)?,
             whole: Whole::new(bench.gpu(), size)?,
             frame,
             rows: 0,
+            strip: None,
         })
     }
 
-    /// Draws the next strip; gives how long a pixel took.
-    fn draw(&self, bench: &mut Bench, part: &mut Part) -> Result<f64, RuntimeError> {
+    /// Draws the next strip.
+    fn draw(&self, bench: &mut Bench, part: &Part) -> Result<Strip, RuntimeError> {
         let [width, height] = part.frame.size;
         let affordable = self.pace.map(|pace| MOMENT.as_secs_f64() / (pace.max(1e-12) * f64::from(width)));
         let rows = affordable.map_or(height, |rows| rows as u32).max(FEWEST_ROWS);
         let left = height - part.rows;
         let rows = if part.can_be_cut { rows.min(left) } else { left };
-        let start = Instant::now();
+        let since = Instant::now();
         let frame = strip(&part.frame, part.rows..part.rows + rows);
         let targets = bench.renderer(&self.shot.catalog).render(&frame)?;
-        let read = values(bench.gpu(), &targets)?;
-        part.whole.add(bench.gpu(), &targets, read, part.rows)?;
-        part.rows += rows;
-        Ok(start.elapsed().as_secs_f64() / (f64::from(width) * f64::from(rows)))
+        Ok(Strip {
+            since,
+            rows,
+            reading: Reading::start(bench.gpu(), &targets)?,
+            targets,
+        })
     }
 
-    fn finish(&self, gpu: &Gpu, part: Part, divisor: u32) -> Result<Refined, RuntimeError> {
-        let (display, values) = part.whole.finish(gpu)?;
-        Ok(Refined {
-            version: self.shot.version,
-            divisor,
-            // Of one size, as they were drawn.
-            errors: Arc::new(Errors::of(&part.found, &values).unwrap_or_default()),
-            display,
-            values,
-        })
+    /// Draws the next strip, or takes in the one that was drawn.
+    fn go_on(&mut self, bench: &mut Bench, part: &mut Part) -> Result<(), RuntimeError> {
+        let mut strip = match part.strip.take() {
+            Some(strip) => strip,
+            None => self.draw(bench, part)?,
+        };
+        let Some(read) = strip.reading.take(bench.gpu())? else {
+            part.strip = Some(strip);
+            return Ok(());
+        };
+        part.whole.add(bench.gpu(), &strip.targets, read, part.rows)?;
+        part.rows += strip.rows;
+        let pixels = f64::from(part.frame.size[0]) * f64::from(strip.rows);
+        self.pace = Some(strip.since.elapsed().as_secs_f64() / pixels);
+        Ok(())
     }
 
     /// A strip, or what comes before and after all of them.
@@ -124,13 +142,25 @@ impl Refine {
             None => self.begin(bench, of, divisor)?,
             Some(part) => part,
         };
-        self.pace = Some(self.draw(bench, &mut part)?);
-        if part.rows < part.frame.size[1] {
+        let height = part.frame.size[1];
+        if part.rows < height {
+            self.go_on(bench, &mut part)?;
+        }
+        let found = if part.rows < height { None } else { part.found.take(bench.gpu())? };
+        let Some(found) = found else {
             self.part = Some(part);
             return Ok(None);
-        }
+        };
         self.done += 1;
-        self.finish(bench.gpu(), part, divisor).map(Some)
+        let (display, values) = part.whole.finish(bench.gpu())?;
+        Ok(Some(Refined {
+            version: self.shot.version,
+            divisor,
+            // Of one size, as they were drawn.
+            errors: Arc::new(Errors::of(&found, &values).unwrap_or_default()),
+            display,
+            values,
+        }))
     }
 }
 

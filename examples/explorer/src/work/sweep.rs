@@ -5,13 +5,13 @@ use std::sync::atomic::AtomicBool;
 
 use shadewright_compiler::{Catalog, Module, Report};
 use shadewright_report::data::cost_of;
-use shadewright_runtime::frame::{Frame, Renderer};
-use shadewright_runtime::gpu::RuntimeError;
+use shadewright_runtime::frame::{DisplayReading, Frame, Renderer};
+use shadewright_runtime::gpu::{Gpu, RuntimeError};
 use shadewright_runtime::naga::ShaderStage;
 use shadewright_runtime::scene::SceneFile;
 
-use super::beside::{failed, values};
-use super::{Bench, Job, News, Progress, Shot, Step, links, reason};
+use super::beside::failed;
+use super::{Bench, Job, News, Progress, Reading, Shot, Step, links, reason};
 use crate::compare::{Errors, SweepView, Told, Truths, Values, reference};
 use crate::document::Draft;
 use crate::tree::{Row, choose, options, rows};
@@ -73,6 +73,25 @@ pub struct Measured {
     pub operations: f64,
 }
 
+/// With what alternatives are compared.
+struct Base {
+    /// The picture that errors are against, on its way.
+    sent: Reading,
+    /// It, when it has come.
+    truth: Option<Values>,
+    /// The present scene.
+    present: Frame,
+}
+
+/// An alternative that is drawn.
+struct Drawn {
+    frame: Frame,
+    sent: Reading,
+    values: Option<Values>,
+    /// None of a scene that is not made for the screen.
+    display: Option<DisplayReading>,
+}
+
 /// Draws alternatives.
 pub struct Sweep {
     shot: Shot,
@@ -80,8 +99,9 @@ pub struct Sweep {
     size: [u32; 2],
     truths: Arc<Truths>,
     candidates: Vec<(String, Change)>,
-    /// What errors are against, and the present scene.
-    base: Option<(Values, Frame)>,
+    base: Option<Base>,
+    /// The picture of the next one, on its way.
+    drawn: Option<Drawn>,
     done: usize,
     cut: u128,
 }
@@ -101,6 +121,7 @@ impl Sweep {
             truths,
             candidates,
             base: None,
+            drawn: None,
             done: 0,
             cut,
         }
@@ -192,9 +213,11 @@ impl Sweep {
         let (scene, against) = self.truth();
         let frame = scene.frame(&self.shot.catalog, Some(self.size))?;
         let targets = bench.renderer(&self.shot.catalog).render(&frame)?;
-        let truth = values(bench.gpu(), &targets)?;
-        let frame = self.shot.scene.frame(&self.shot.catalog, Some(self.size))?;
-        self.base = Some((truth, frame));
+        self.base = Some(Base {
+            sent: Reading::start(bench.gpu(), &targets)?,
+            truth: None,
+            present: self.shot.scene.frame(&self.shot.catalog, Some(self.size))?,
+        });
         Ok(SweepView {
             version: self.shot.version,
             path: self.row.path.clone(),
@@ -207,28 +230,56 @@ impl Sweep {
         })
     }
 
-    fn measure(&self, bench: &mut Bench, change: &Change, truth: &Values, present: &Frame) -> Result<Measured, RuntimeError> {
+    fn draw(&self, bench: &mut Bench, change: &Change) -> Result<Drawn, RuntimeError> {
         let frame = self.with(change)?.frame(&self.shot.catalog, Some(self.size))?;
-        let gpu = bench.gpu().clone();
+        let targets = bench.renderer(&self.shot.catalog).render(&frame)?;
+        Ok(Drawn {
+            frame,
+            sent: Reading::start(bench.gpu(), &targets)?,
+            values: None,
+            display: targets.start_read_display(bench.gpu())?,
+        })
+    }
+
+    /// What an alternative does; none while its picture has not come.
+    fn measure(&mut self, bench: &mut Bench, change: &Change, truth: &Values, present: &Frame) -> Result<Option<Measured>, RuntimeError> {
+        let mut drawn = match self.drawn.take() {
+            Some(drawn) => drawn,
+            None => self.draw(bench, change)?,
+        };
+        if drawn.values.is_none() {
+            drawn.values = drawn.sent.take(bench.gpu())?;
+        }
+        let (Some(found), Some(pixels)) = (&drawn.values, pixels(&mut drawn.display, bench.gpu())?) else {
+            self.drawn = Some(drawn);
+            return Ok(None);
+        };
         let renderer = bench.renderer(&self.shot.catalog);
-        let targets = renderer.render(&frame)?;
-        let found = values(&gpu, &targets)?;
-        let pixels = targets.read_display(&gpu)?.unwrap_or_default();
-        let ratio = ratio(renderer, &frame, present)?;
-        let errors = Errors::of(&found, truth).unwrap_or_default();
-        Ok(Measured {
+        let errors = Errors::of(found, truth).unwrap_or_default();
+        Ok(Some(Measured {
             pixels,
             summary: errors.summary,
             rms: errors.rms,
-            ratio,
-            operations: operations(renderer, &frame)?,
-        })
+            ratio: ratio(renderer, &drawn.frame, present)?,
+            operations: operations(renderer, &drawn.frame)?,
+        }))
+    }
+}
+
+/// A picture as it is shown, if it has come; nothing of one that is not made for the screen.
+fn pixels(display: &mut Option<DisplayReading>, gpu: &Gpu) -> Result<Option<Vec<u8>>, RuntimeError> {
+    match display {
+        None => Ok(Some(Vec::new())),
+        Some(reading) => reading.take(gpu).transpose(),
     }
 }
 
 /// Time of a frame's scene pass on the GPU over another's: medians of several in turn, so that a busy moment is both's, after one of each that warms up.
-/// None where the device has no timestamps.
+/// None where the device has no timestamps, and on a page, where nobody may wait for them.
 fn ratio(renderer: &mut Renderer, frame: &Frame, present: &Frame) -> Result<Option<f64>, RuntimeError> {
+    if cfg!(target_arch = "wasm32") {
+        return Ok(None);
+    }
     let mut times = [Vec::new(), Vec::new()];
     for _ in 0..=TIMED {
         for (frame, times) in [frame, present].into_iter().zip(&mut times) {
@@ -249,12 +300,7 @@ fn time(renderer: &mut Renderer, frame: &Frame) -> Result<Option<f64>, RuntimeEr
     // Of frames before.
     while renderer.take_times().is_some() {}
     renderer.render(frame)?;
-    let taken = if cfg!(target_arch = "wasm32") {
-        renderer.take_times()
-    } else {
-        renderer.wait_for_times()?
-    };
-    Ok(taken.map(|taken| {
+    Ok(renderer.wait_for_times()?.map(|taken| {
         let scene = taken.passes.iter().filter(|pass| pass.name.starts_with("scene"));
         scene.map(|pass| pass.nanoseconds).sum()
     }))
@@ -284,7 +330,7 @@ impl Job for Sweep {
     }
 
     fn step(&mut self, bench: &mut Bench, _: &AtomicBool, tell: &mut dyn FnMut(News)) -> Step {
-        let Some((truth, present)) = self.base.take() else {
+        let Some(mut base) = self.base.take() else {
             match self.begin(bench) {
                 Ok(view) => tell(News::Compare(Told::Sweep(view))),
                 Err(error) => {
@@ -294,15 +340,35 @@ impl Job for Sweep {
             }
             return self.progress();
         };
-        let Some((name, change)) = self.candidates.get(self.done) else {
+        let truth = match base
+            .truth
+            .take()
+            .map_or_else(|| base.sent.take(bench.gpu()), |truth| Ok(Some(truth)))
+        {
+            Ok(Some(truth)) => truth,
+            Ok(None) => {
+                self.base = Some(base);
+                return self.progress();
+            }
+            Err(error) => {
+                tell(News::Compare(failed(self.kind(), &error)));
+                return Step::Break(());
+            }
+        };
+        let Some((name, change)) = self.candidates.get(self.done).cloned() else {
             return Step::Break(());
         };
-        let outcome = self.measure(bench, change, &truth, &present);
+        let outcome = self.measure(bench, &change, &truth, &base.present).transpose();
+        base.truth = Some(truth);
+        self.base = Some(base);
+        let Some(outcome) = outcome else {
+            return self.progress();
+        };
         let outcome = outcome.map_err(|error| match error {
             RuntimeError::Compile(report) => reason(&report),
             error => error.to_string(),
         });
-        let (is_present, stored) = match change {
+        let (is_present, stored) = match &change {
             Change::Module(module) => (
                 self.row.module.as_ref().is_some_and(|now| Arc::ptr_eq(now, module)),
                 self.truths.stored.of(module).to_vec(),
@@ -315,13 +381,12 @@ impl Job for Sweep {
             ..measured
         });
         tell(News::Compare(Told::Alternative(Box::new(Alternative {
-            name: name.clone(),
-            change: change.clone(),
+            name,
+            change,
             is_present,
             stored,
             outcome,
         }))));
-        self.base = Some((truth, present));
         self.done += 1;
         if self.done == self.candidates.len() {
             return Step::Break(());

@@ -5,10 +5,11 @@ use std::sync::atomic::AtomicBool;
 
 use eframe::egui::ColorImage;
 use shadewright_compiler::Catalog;
+use shadewright_runtime::frame::DisplayReading;
 use shadewright_runtime::gpu::RuntimeError;
 use shadewright_runtime::scene::Files;
 
-use super::{Bench, Job, News, Step};
+use super::{Bench, Job, News, Progress, Step};
 use crate::compare::Told;
 use crate::document::State;
 
@@ -24,14 +25,32 @@ pub struct DrawThumbnail {
     pub catalog: Arc<Catalog>,
     /// Width and height, pixels.
     pub size: [u32; 2],
+    /// The picture on its way from the GPU: `None` at first.
+    pub reading: Option<DisplayReading>,
 }
 
 impl DrawThumbnail {
-    fn draw(&self, bench: &mut Bench) -> Result<ColorImage, RuntimeError> {
+    /// Draws it and has it sent.
+    fn start(&self, bench: &mut Bench) -> Result<Option<DisplayReading>, RuntimeError> {
         let frame = self.state.parse(&self.files)?.frame(&self.catalog, Some(self.size))?;
         let targets = bench.renderer(&self.catalog).render(&frame)?;
-        let pixels = targets.read_display(bench.gpu())?.unwrap_or_default();
-        Ok(picture(self.size, &pixels))
+        targets.start_read_display(bench.gpu())
+    }
+
+    fn advance(&mut self, bench: &mut Bench) -> Result<Option<ColorImage>, RuntimeError> {
+        if self.reading.is_none() {
+            self.reading = self.start(bench)?;
+        }
+        let pixels = match &mut self.reading {
+            // A scene that is not made for the screen.
+            None => Some(Vec::new()),
+            Some(reading) => {
+                // A page waits for nothing, and asks again in its next frame.
+                bench.gpu().wait()?;
+                reading.take(bench.gpu()).transpose()?
+            }
+        };
+        Ok(pixels.map(|pixels| picture(self.size, &pixels)))
     }
 }
 
@@ -49,7 +68,17 @@ impl Job for DrawThumbnail {
     }
 
     fn step(&mut self, bench: &mut Bench, _: &AtomicBool, tell: &mut dyn FnMut(News)) -> Step {
-        let drawn = self.draw(bench).map_err(|error| error.to_string());
+        let drawn = match self.advance(bench) {
+            Ok(None) => {
+                return Step::Continue(Progress {
+                    what: "drawing a pin".into(),
+                    done: 1,
+                    of: 2,
+                });
+            }
+            Ok(Some(drawn)) => Ok(drawn),
+            Err(error) => Err(error.to_string()),
+        };
         tell(News::Compare(Told::Thumbnail(self.pin, drawn)));
         Step::Break(())
     }

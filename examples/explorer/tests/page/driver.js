@@ -36,14 +36,17 @@ async function colour() {
     }
 }
 
-// The colour once it is another than it was and stays as it is.
+// The grey where a picture is still being drawn.
+const EMPTY = [24, 24, 24];
+
+// The colour once it is another than it was, that of a picture, and stays as it is.
 async function changed(before) {
     const far = (a, b) => Math.max(...a.map((value, index) => Math.abs(value - b[index])));
     let last = await colour();
     for (let same = 0; same < 8;) {
         await sleep(100);
         const now = await colour();
-        same = far(now, last) < 0.5 && (!before || far(now, before) > 1) ? same + 1 : 0;
+        same = far(now, last) < 0.5 && far(now, before) > 1 && far(now, EMPTY) > 1 ? same + 1 : 0;
         last = now;
     }
     return last;
@@ -93,8 +96,7 @@ const download = () => new Promise(resolve => {
         const said = () => document.getElementById("said").textContent;
         while (said() === "Loading the explorer" || document.readyState !== "complete") await sleep(50);
         if (said()) throw new Error(said());
-        // Until there is a picture its place is grey: (24, 24, 24).
-        let now = await changed([24, 24, 24]);
+        let now = await changed(EMPTY);
         await tell({ colour: now });
         for (const link of LINKS) {
             location.hash = link;

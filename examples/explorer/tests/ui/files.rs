@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use eframe::egui::{DroppedFile, Key, Modifiers};
 use egui_kittest::Harness;
+use explorer::compare::Pin;
 use explorer::document::Document;
 use explorer::files::Kept;
 use explorer::{App, Start};
 use shadewright_runtime::image::{decode_exr, decode_texture};
 use shadewright_runtime::scene::{Files, SceneFile};
 
-use crate::harness::{SMALL, click, fill, open_small, said, select, settle, small, start};
+use crate::harness::{SMALL, click, fill, mean, open, open_small, said, select, settle, small, start};
 
 #[derive(Debug)]
 struct Dropped(PathBuf);
@@ -117,21 +118,70 @@ fn pictures_and_texts_are_exported() {
     assert_eq!(program.wgsl(), wgsl);
 }
 
+/// Catches opening that takes what was not saved, a way back to the wrong scene, pins of one scene in another, and a way forward that is lost.
+#[test]
+fn opening_can_be_undone() {
+    let mut explorer = open("sphere");
+    explorer.state_mut().pin();
+    explorer
+        .state_mut()
+        .edit("darker", |draft| draft.set(&[], "background", "(0.0, 0.0, 0.0)"));
+    settle(&mut explorer);
+    let sphere = (explorer.state().document.state().clone(), mean(&explorer));
+    click(&mut explorer, "File");
+    click(&mut explorer, "Examples");
+    click(&mut explorer, "spots");
+    settle(&mut explorer);
+    let spots = explorer.state().document.state().clone();
+    assert_eq!(spots.name, "spots");
+    assert!(explorer.state().compare.pins.all.is_empty());
+    assert_eq!(explorer.state().can_undo().unwrap(), "opening spots");
+    explorer.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut explorer);
+    assert_eq!((explorer.state().document.state().clone(), mean(&explorer)), sphere);
+    assert_eq!(explorer.state().compare.pins.all.len(), 1);
+    assert_eq!(explorer.state().can_undo().unwrap(), "darker");
+    assert_eq!(explorer.state().can_redo().unwrap(), "opening spots");
+    explorer.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    settle(&mut explorer);
+    assert_eq!(explorer.state().document.state(), &spots);
+    // What was gone back from is still there when a third one is opened.
+    explorer.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut explorer);
+    explorer.state_mut().open(small());
+    settle(&mut explorer);
+    let mut names = Vec::new();
+    while explorer.state().can_undo().is_some() {
+        explorer.state_mut().undo();
+        names.push(explorer.state().document.state().name.clone());
+    }
+    assert_eq!(names, ["sphere", "sphere", "spots"]);
+}
+
 /// Catches work that a crash takes: the explorer is dropped without being closed.
 #[test]
 fn state_survives_a_crash() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("deeper/state.json");
-    let begin = |document: Document| {
+    let begin = |document: Document, pins: Vec<Pin>| {
         let begin = Start {
             document,
+            pins,
             state_file: Some(file.clone()),
             kept: Kept::read(&file),
             ..Start::with(small())
         };
         start(begin, [900.0, 600.0], 1.0)
     };
-    let mut explorer = begin(Document::new(small()));
+    let mut explorer = begin(Document::new(small()), Vec::new());
+    explorer
+        .state_mut()
+        .edit("of the scene before", |draft| draft.set(&[], "size", "(10, 10)"));
+    let before = explorer.state().document.state().clone();
+    explorer.state_mut().open(small());
+    explorer.run_steps(2);
+    explorer.state_mut().pin();
+    let pins = explorer.state().compare.pins.all.clone();
     explorer.state_mut().edit("size", |draft| draft.set(&[], "size", "(16, 12)"));
     explorer.state_mut().edit("off", |draft| draft.remove(&[], "lights", 1, true));
     select(&mut explorer, "lights[0]");
@@ -144,13 +194,18 @@ fn state_survives_a_crash() {
     std::mem::forget(explorer);
     let kept = Kept::read(&file);
     assert!(!kept.starting);
-    let document = Document::restored(kept.state.unwrap(), kept.saved, &Files::default()).unwrap();
+    let work = kept.work.unwrap();
+    let document = Document::restored(work.state, work.saved, &Files::default()).unwrap();
     assert!(document.is_changed());
-    let explorer = begin(document);
+    let mut explorer = begin(document, work.pins);
     assert_eq!(
         (explorer.state().document.state(), explorer.state().selected.as_str()),
         (&state, "lights[0]")
     );
+    assert_eq!(explorer.state().compare.pins.all, pins);
+    explorer.state_mut().undo();
+    settle(&mut explorer);
+    assert_eq!(explorer.state().document.state(), &before);
     assert!(SceneFile::parse("x", &state.text, Path::new("")).is_ok());
     std::fs::write(&file, "{ damaged").unwrap();
     assert_eq!(Kept::read(&file), Kept::default());

@@ -108,9 +108,7 @@ impl Whole {
     /// # Errors
     /// The GPU fails.
     pub fn finish(self, gpu: &Gpu) -> Result<(wgpu::Texture, Values), RuntimeError> {
-        if cfg!(not(target_arch = "wasm32")) {
-            gpu.wait()?;
-        }
+        gpu.wait()?;
         let values = Values {
             size: self.size,
             texels: self.texels,

@@ -66,12 +66,8 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui, made: &Made, listing: &List
 fn named(app: &App, made: &Made, place: &str, because: &str) -> String {
     // Recipes of a scene have no text of their own.
     let row = row_of(&app.rows, made.subject(), made.place(place)).filter(|_| because.starts_with("recipe:"));
-    let Some(row) = row else { return because.to_owned() };
-    let source = app.document.scene().source();
-    // What is found there is a part of that text.
-    let found = app.document.scene().get(&row.path);
-    let at = found.and_then(|text| (text.as_ptr() as usize).checked_sub(source.text.as_ptr() as usize));
-    at.map_or_else(|| because.to_owned(), |byte| source.place(byte))
+    let stated = row.and_then(|row| app.document.scene().place(&row.path));
+    stated.unwrap_or_else(|| because.to_owned())
 }
 
 /// Selects the row of the module that a line is from.
