@@ -62,6 +62,14 @@ fn elements_move_by_keys() {
         (explorer.state().selected.as_str(), said(&explorer, "lights[1].name")),
         ("lights[1]", Some("\"lamp\""))
     );
+    explorer.key_press_modifiers(Modifiers::ALT, Key::ArrowUp);
+    explorer.run_steps(3);
+    assert_eq!(
+        (explorer.state().selected.as_str(), said(&explorer, "lights[0].name")),
+        ("lights[0]", Some("\"lamp\""))
+    );
+    explorer.key_press_modifiers(Modifiers::ALT, Key::ArrowDown);
+    explorer.run_steps(3);
     explorer.key_press(Key::Delete);
     settle(&mut explorer);
     assert_eq!(

@@ -35,6 +35,8 @@ impl Cost {
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     let Some(sweep) = heading(app, ui) else { return };
     let mut chosen = None;
+    // Some devices do not say what a pass takes, and no page does.
+    let is_timed = sweep.alternatives.iter().any(|alternative| Cost::Time.of(alternative).is_some());
     let height = ui.available_height();
     let width = ui.available_width();
     ui.horizontal_top(|ui| {
@@ -42,13 +44,17 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
             ui.set_width(width * 0.5);
             ui.horizontal(|ui| {
                 ui.label("cost:");
-                let cost = &mut app.tabs.cost;
-                ui.radio_value(cost, Cost::Time, "time")
-                    .on_hover_text("Scene pass on the GPU, over the present choice's");
-                ui.radio_value(cost, Cost::Operations, "operations")
+                let wanted = &mut app.tabs.cost;
+                ui.add_enabled_ui(is_timed, |ui| {
+                    ui.radio_value(wanted, Cost::Time, "time")
+                        .on_hover_text("Scene pass on the GPU, over the present choice's")
+                        .on_disabled_hover_text("This device does not say what a pass takes");
+                });
+                ui.radio_value(wanted, Cost::Operations, "operations")
                     .on_hover_text("Weighted operations of all programs for a pixel, loops' bodies once");
             });
-            chosen = plot::show(ui, &sweep, app.tabs.cost, height - 30.0);
+            let cost = if is_timed { app.tabs.cost } else { Cost::Operations };
+            chosen = plot::show(ui, &sweep, cost, height - 30.0);
         });
         ui.vertical(|ui| {
             chosen = table::show(ui, &sweep).or(chosen.take());

@@ -25,9 +25,6 @@ struct Dot<'s> {
 pub(super) fn show(ui: &mut egui::Ui, sweep: &SweepView, cost: Cost, height: f32) -> Option<Arc<Alternative>> {
     let dots = dots(sweep, cost);
     if dots.is_empty() {
-        if sweep.alternatives.len() == sweep.of && cost == Cost::Time {
-            ui.label("This device does not say what a pass takes: operations are known.");
-        }
         return None;
     }
     let values: Vec<[f64; 2]> = dots.iter().map(|dot| dot.value).collect();
