@@ -94,15 +94,20 @@ fn a_window_is_driven_and_killed() {
             .is_ok()
     };
     let Some(display) = Display::open().filter(|_| there("xdotool") && there("import")) else {
-        println!("skipped: Xvfb, xdotool and ImageMagick's import are not all there");
+        println!("NOT TESTED: Xvfb, xdotool and ImageMagick's import are not all there");
         return;
     };
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("shadewright/explorer.json");
+    let start = Instant::now();
     let window = display.explorer(folder.path(), &["sphere"]);
     // The middle of the window is the picture.
     let middle = [400, 120, 400, 300];
     until("a picture", || colours(&display.screenshot(), middle) > 200);
+    println!(
+        "a picture is on the screen {} ms after the start of the process",
+        start.elapsed().as_millis()
+    );
     until("the state of the first picture", || !Kept::read(&file).starting && file.exists());
     let camera = || {
         let text = Kept::read(&file).work.map(|work| work.state.text).unwrap_or_default();

@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use serde::de::{self, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer};
-use shadewright_compiler::manifest::Value;
+use shadewright_compiler::manifest::{Filling, Node, Value};
 
 use std::sync::Arc;
 
@@ -61,6 +61,28 @@ impl Choice {
         Self {
             module: module.into(),
             ..Self::default()
+        }
+    }
+}
+
+/// What a default says, as a scene would.
+impl From<&Node> for Choice {
+    fn from(node: &Node) -> Self {
+        Self {
+            fill: node.fill.iter().map(|(slot, filling)| (slot.clone(), filling.into())).collect(),
+            freeze: node.freeze.clone(),
+            files: node.files.clone(),
+            label: node.label.clone(),
+            ..Self::new(node.module.clone())
+        }
+    }
+}
+
+impl From<&Filling> for Choices {
+    fn from(filling: &Filling) -> Self {
+        match filling {
+            Filling::One(node) => Self::One(Box::new(node.into())),
+            Filling::Many(nodes) => Self::Many(nodes.iter().map(Choice::from).collect()),
         }
     }
 }

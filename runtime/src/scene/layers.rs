@@ -9,7 +9,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use shadewright_compiler::manifest::{Filling, Node, Slot, Step};
+use shadewright_compiler::manifest::{Slot, Step};
 use shadewright_compiler::{Catalog, Module};
 
 use super::check::Examiner;
@@ -75,7 +75,7 @@ fn full_name(module: &Module) -> String {
 /// What stands in a slot of the pass: by the look so far, by the scene's pass, by default.
 fn standing(name: &str, slot: &Slot, look: &Look, said: &Look) -> Option<Choices> {
     let chosen = look.get(name).or_else(|| said.get(name)).cloned();
-    chosen.or_else(|| slot.default.as_ref().map(choices_of))
+    chosen.or_else(|| slot.default.as_ref().map(Choices::from))
 }
 
 /// Puts the module into all slots of its category below these choices for a slot of the interface; whether there are any.
@@ -95,7 +95,7 @@ fn replace(choices: &mut Choices, interface: &str, module: &Module, catalog: &Ca
                 choice.fill.insert(name.clone(), replacement);
                 found = true;
             } else if depth > 0 {
-                let below = choice.fill.get(name).cloned().or_else(|| slot.default.as_ref().map(choices_of));
+                let below = choice.fill.get(name).cloned().or_else(|| slot.default.as_ref().map(Choices::from));
                 let Some(mut below) = below else { continue };
                 if replace(&mut below, &slot.interface, module, catalog, depth - 1) {
                     choice.fill.insert(name.clone(), below);
@@ -105,25 +105,4 @@ fn replace(choices: &mut Choices, interface: &str, module: &Module, catalog: &Ca
         }
     }
     found
-}
-
-fn choices_of(filling: &Filling) -> Choices {
-    match filling {
-        Filling::One(node) => Choices::One(Box::new(choice_of(node))),
-        Filling::Many(nodes) => Choices::Many(nodes.iter().map(choice_of).collect()),
-    }
-}
-
-fn choice_of(node: &Node) -> Choice {
-    Choice {
-        module: node.module.clone(),
-        fill: node
-            .fill
-            .iter()
-            .map(|(slot, filling)| (slot.clone(), choices_of(filling)))
-            .collect(),
-        freeze: node.freeze.clone(),
-        label: node.label.clone(),
-        ..Choice::default()
-    }
 }

@@ -213,7 +213,7 @@ impl Maker<'_> {
             }
             let path = (holder.path)(name);
             let stated = holder.fill.get(name);
-            let default = || inherited.get(name).cloned().or_else(|| slot.default.as_ref().map(choices_of));
+            let default = || inherited.get(name).cloned().or_else(|| slot.default.as_ref().map(Choices::from));
             let choices = stated.cloned().or_else(default);
             if slot.arity == Arity::List {
                 let kind = Kind::List {
@@ -322,28 +322,6 @@ fn label_of(text: &str) -> Option<String> {
     let options = shadewright_compiler::manifest::ron_options();
     let bare = || options.from_str::<String>(text).ok();
     options.from_str::<Named>(text).ok().and_then(of).or_else(bare)
-}
-
-/// A default as a scene's choice.
-fn choices_of(filling: &Filling) -> Choices {
-    match filling {
-        Filling::One(node) => Choices::One(Box::new(choice_of(node))),
-        Filling::Many(nodes) => Choices::Many(nodes.iter().map(choice_of).collect()),
-    }
-}
-
-fn choice_of(node: &Node) -> Choice {
-    Choice {
-        fill: node
-            .fill
-            .iter()
-            .map(|(slot, filling)| (slot.clone(), choices_of(filling)))
-            .collect(),
-        freeze: node.freeze.clone(),
-        files: node.files.clone(),
-        label: node.label.clone(),
-        ..Choice::new(node.module.clone())
-    }
 }
 
 /// The part of a choice that a recipe has, which is all that a default says.
