@@ -1,6 +1,7 @@
 //! The application: a document, the lanes that work for it, and what is on the screen.
 
 mod compare;
+mod disk;
 mod files;
 mod news;
 mod opened;
@@ -21,7 +22,7 @@ use web_time::Instant;
 
 use crate::compare::{Compare, Pin};
 use crate::document::{Document, Draft, step_path};
-use crate::files::{Dialog, Kept, Modules};
+use crate::files::{Dialog, Kept, Watch};
 use crate::panels::{self, Tabs, TreeState, Viewport};
 use crate::tree::{Row, rows};
 use crate::work::{Bench, Lane, Shot};
@@ -107,9 +108,11 @@ pub struct App {
     /// What is kept for the next start.
     pub kept: Kept,
     /// The user's folder of modules.
-    pub modules: Option<Modules>,
+    pub modules: Option<Watch>,
     pub(crate) context: egui::Context,
     others: Others,
+    /// The file that is followed, and by what.
+    on_disk: (String, Option<Watch>),
     /// Files that people have given to the page.
     #[cfg(target_arch = "wasm32")]
     pub(crate) inbox: crate::files::web::Inbox,
@@ -160,6 +163,7 @@ impl App {
             keeping: (Kept::default(), None),
             kept,
             modules: None,
+            on_disk: (String::new(), None),
             context: context.clone(),
             #[cfg(target_arch = "wasm32")]
             inbox: crate::files::web::Inbox::default(),

@@ -9,7 +9,7 @@ use clap::{Parser, Subcommand};
 use eframe::egui;
 use explorer::compare::Pin;
 use explorer::document::Document;
-use explorer::files::{Kept, Modules, state_file};
+use explorer::files::{Kept, library_with, state_file};
 use explorer::{App, Start, scenes};
 use shadewright_runtime::gpu::Gpu;
 use shadewright_runtime::image::write_atomically;
@@ -119,7 +119,7 @@ fn start(options: &Options) -> Result<Start, String> {
     Ok(Start {
         document,
         pins,
-        library: own.as_deref().map_or_else(shadewright_modules::library, Modules::library),
+        library: own.as_deref().map_or_else(shadewright_modules::library, library_with),
         kept,
         state_file,
     })

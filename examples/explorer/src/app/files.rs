@@ -8,7 +8,7 @@ use web_time::Instant;
 
 use super::App;
 use crate::document::State;
-use crate::files::{Answer, Export, Keep, Kept, Modules, Purpose, Reload, Work, save};
+use crate::files::{Answer, Export, Keep, Kept, Purpose, Reload, Watch, Work, library_with, save};
 
 /// What has changed is kept this long after it: not for every step of a slider.
 const PATIENCE: Duration = Duration::from_millis(300);
@@ -52,13 +52,16 @@ impl App {
         }
     }
 
-    /// Saves the scene where it is from; asks where that is nowhere.
+    /// Saves the scene where it is from; asks where that is nowhere, or something else is there by now.
     pub fn save(&mut self) {
         let name = self.document.state().name.clone();
-        if Path::new(&name).is_file() {
-            self.save_as(&name);
-        } else {
-            self.ask_path(Purpose::SaveAs);
+        let is_file = Path::new(&name).is_file();
+        if is_file && !self.is_other_on_disk() {
+            return self.save_as(&name);
+        }
+        self.ask_path(Purpose::SaveAs);
+        if is_file {
+            self.message = format!("{name} was changed by another program");
         }
     }
 
@@ -93,15 +96,19 @@ impl App {
             return;
         };
         if self.watch(&folder) {
-            self.lanes.desk.ask(Reload::Other(Modules::library(&folder)));
+            self.lanes.desk.ask(Reload::Other(library_with(&folder)));
             self.kept.modules = Some(folder);
         }
     }
 
     /// Watches a folder of modules; whether that can be.
     pub(super) fn watch(&mut self, folder: &Path) -> bool {
+        if !folder.is_dir() {
+            self.message = format!("{} is no folder", folder.display());
+            return false;
+        }
         let context = self.context.clone();
-        match Modules::watch(folder, move || context.request_repaint()) {
+        match Watch::new(folder, move || context.request_repaint()) {
             Ok(modules) => self.modules = Some(modules),
             Err(why) => {
                 self.message = why;
@@ -123,9 +130,10 @@ impl App {
             self.inbox.receive(dropped, context);
             self.take_inbox();
         }
-        if self.modules.as_ref().is_some_and(Modules::take_change) {
+        if self.modules.as_ref().is_some_and(Watch::take_change) {
             self.lanes.desk.ask(Reload::Again(self.catalog.clone()));
         }
+        self.follow_file();
         self.keep();
     }
 

@@ -33,6 +33,7 @@ impl App {
                 self.problems = vec![Problem::Other(what.to_owned(), message)];
             }
             News::Found(found) => self.take_found(found),
+            News::OnDisk { path, text } => self.take_disk(&path, text),
             News::Said(message) => self.message = message,
             News::Library(Ok(catalog)) => {
                 self.message = format!("{} modules", catalog.modules().count());

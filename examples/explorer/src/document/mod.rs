@@ -201,6 +201,20 @@ impl Document {
         })
     }
 
+    /// Takes what is on disk by now, as one step.
+    ///
+    /// # Errors
+    /// The text is no scene.
+    pub fn take_over(&mut self, what: &str, text: Arc<str>) -> Result<(), Report> {
+        let state = State {
+            text: Arc::clone(&text),
+            ..self.state.clone()
+        };
+        self.replace(what, &state)?;
+        self.saved = text;
+        Ok(())
+    }
+
     /// The next edit is a step of its own.
     pub fn close(&mut self) {
         self.open = false;

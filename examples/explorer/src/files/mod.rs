@@ -5,7 +5,9 @@ mod drop;
 mod export;
 mod keep;
 mod modules;
+mod reread;
 mod save;
+mod watch;
 #[cfg(target_arch = "wasm32")]
 pub(crate) mod web;
 
@@ -13,5 +15,7 @@ pub use dialog::{Answer, Dialog, Purpose};
 pub use drop::{Found, Look};
 pub use export::Export;
 pub use keep::{Keep, Kept, Work, state_file};
-pub use modules::{Modules, Reload};
+pub use modules::{Reload, library_with};
+pub use reread::Reread;
 pub use save::save;
+pub use watch::Watch;

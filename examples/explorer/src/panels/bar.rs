@@ -80,7 +80,7 @@ fn files(app: &mut App, ui: &mut egui::Ui) {
     }
     ui.separator();
     ask(app, ui, Purpose::Modules, "");
-    let folder = app.modules.as_ref().map(|modules| modules.folder.display().to_string());
+    let folder = app.modules.as_ref().map(|modules| modules.path.display().to_string());
     if let Some(folder) = folder
         && ui
             .button("Standard modules only")

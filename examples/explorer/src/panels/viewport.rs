@@ -36,8 +36,6 @@ pub struct Viewport {
     asked: Option<(u64, [u32; 2])>,
     /// Nanoseconds a pixel, of the last picture.
     pace: f64,
-    /// The first picture of another scene: its size has no pace yet.
-    pub is_first: bool,
 }
 
 impl Viewport {
@@ -86,7 +84,6 @@ impl Viewport {
     /// What is shown belongs to another scene.
     pub fn forget(&mut self) {
         self.asked = None;
-        self.is_first = true;
     }
 
     /// What the picture shows.

@@ -22,6 +22,7 @@ mod sweep;
 mod tests;
 mod thumbnail;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use shadewright_compiler::{Catalog, Report};
@@ -84,6 +85,13 @@ pub enum News {
     Compare(crate::compare::Told),
     /// What a file holds.
     Found(Found),
+    /// What the scene's file holds after another program has changed it.
+    OnDisk {
+        /// The file.
+        path: PathBuf,
+        /// What it holds.
+        text: Arc<str>,
+    },
     /// A library that was read, or what is wrong with it.
     Library(Result<Arc<Catalog>, Report>),
     /// Something was done.

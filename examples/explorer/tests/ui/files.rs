@@ -13,6 +13,7 @@ use shadewright_runtime::image::{decode_exr, decode_texture};
 use shadewright_runtime::scene::{Files, SceneFile};
 
 use crate::harness::{SMALL, click, fill, mean, open, open_small, said, select, settle, small, start};
+use crate::modules::until;
 
 #[derive(Debug)]
 struct Dropped(PathBuf);
@@ -116,6 +117,46 @@ fn pictures_and_texts_are_exported() {
     let recipe = shadewright_compiler::Recipe::parse("a", &recipe).unwrap();
     let program = explorer.state().catalog.compile(&recipe, "main").unwrap();
     assert_eq!(program.wgsl(), wgsl);
+}
+
+/// Catches an edit in an editor that is not seen, that is no step, that takes what was changed here, or that is lost by saving; and an error in it that
+/// takes the picture, or stays when it is mended.
+#[test]
+fn the_scenes_file_is_followed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mine.scene.ron");
+    let text = |size: u32| SMALL.replace("size: (64, 48)", &format!("size: ({size}, 48)"));
+    std::fs::write(&file, text(64)).unwrap();
+    let mut explorer = open_small();
+    explorer.state_mut().open_file(file.clone());
+    until(&mut explorer, "opened", |app| app.document.state().name.ends_with("mine.scene.ron"));
+    std::fs::write(&file, text(65)).unwrap();
+    until(&mut explorer, "followed", |app| *app.document.state().text == text(65));
+    assert!(!explorer.state().document.is_changed());
+    assert!(explorer.state().can_undo().unwrap().starts_with("Take over "));
+    let shown = mean(&explorer);
+    std::fs::write(&file, "(pass:").unwrap();
+    until(&mut explorer, "wrong", |app| !app.problems.is_empty());
+    assert_eq!((&*explorer.state().document.state().text, mean(&explorer)), (&*text(65), shown));
+    std::fs::write(&file, text(65)).unwrap();
+    until(&mut explorer, "mended", |app| app.problems.is_empty());
+    // Changed on both sides.
+    explorer
+        .state_mut()
+        .edit("here", |draft| draft.set(&[], "background", "(1.0, 2.0, 3.0)"));
+    let here = explorer.state().document.state().text.clone();
+    std::fs::write(&file, text(66)).unwrap();
+    until(&mut explorer, "told", |app| app.message.contains("another program too"));
+    assert_eq!(explorer.state().document.state().text, here);
+    explorer.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    settle(&mut explorer);
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), text(66), "it asks first");
+    click(&mut explorer, "OK");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), text(66), "it asks again");
+    click(&mut explorer, "OK");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), *here);
+    settle(&mut explorer);
+    assert!(!explorer.state().document.is_changed());
 }
 
 /// Catches opening that takes what was not saved, a way back to the wrong scene, pins of one scene in another, and a way forward that is lost.
