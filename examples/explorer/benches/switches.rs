@@ -44,11 +44,14 @@ Made by `cargo bench -p explorer --bench switches -- --scene sphere,first --writ
 
 The explorer runs without a window, on the device that it would have there. A switch puts a random module that fits into a random place of the scene
 (geometry, materials, lights, display) and stays: the next one is made on top of it, and after ten of them it goes on from the example. One that the compiler
-refuses is taken back and not counted. The time of a switch ends with the frame of the window that shows the picture; its parts are those of that picture. A software driver compiles a pipeline's code when it first draws, so there the frame's time is mostly its compiler's.
+refuses is taken back and not counted. The time of a switch ends with the frame of the window that shows the picture; its parts are those of that picture. A software
+driver compiles a pipeline's code when it first draws, so there the frame's time is mostly its compiler's. Between runs on a shared machine times change by a third.
 ";
 
 /// One choice.
 struct Switch {
+    /// The place and what it was given.
+    what: String,
     /// From the choice to the frame of the window that shows its picture.
     all: Duration,
     times: Times,
@@ -139,6 +142,7 @@ impl Explorer {
         if row.module.as_ref().is_some_and(|chosen| chosen.name == module.name) {
             return None;
         }
+        let what = format!("{} in {}", module.name, row.path);
         let start = Instant::now();
         app.edit("switch", |draft| choose(draft, &catalog, row, Some(module)));
         if !self.wait() {
@@ -149,6 +153,7 @@ impl Explorer {
         let painted = self.harness.state().viewport.painted.as_ref()?;
         Some(Switch {
             all: start.elapsed(),
+            what,
             times: painted.times.clone(),
         })
     }
@@ -188,6 +193,9 @@ fn timed(page: &mut String, example: &str) {
     row(page, "pipelines", of(|s| s.times.cpu.pipelines));
     row(page, "recording", of(|s| s.times.cpu.record));
     row(page, "frame on the GPU, with what its driver compiles then", of(|s| s.times.gpu));
+    switches.sort_by_key(|switch| std::cmp::Reverse(switch.all));
+    let slowest: Vec<&str> = switches.iter().take(3).map(|switch| switch.what.as_str()).collect();
+    let _ = writeln!(page, "\nThe slowest: {}.", slowest.join("; "));
     let _ = writeln!(
         page,
         "\nFrom nothing, no device yet, to the first picture: {:.0} ms.\n",
