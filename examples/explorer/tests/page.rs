@@ -6,6 +6,7 @@
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used)]
 
+use std::io::Write;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -108,18 +109,23 @@ fn unescaped(text: &str) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
+/// Says it where it is seen: what a test that passes prints is not.
+fn not_tested(why: &str) {
+    let _ = writeln!(std::io::stderr(), "NOT TESTED: {why}");
+}
+
 /// Catches a page that does not start, draws nothing, does not do what it is told by its address or by the mouse, does not say in its address what it
 /// shows, does not take or give files; and whatever a browser complains about.
 #[test]
 fn the_page_draws_and_follows() {
     let Some(browser) = chromium() else {
-        println!("NOT TESTED: there is no Chromium on the path (Debian: apt-get install --no-install-recommends chromium)");
+        not_tested("there is no Chromium on the path (Debian: apt-get install --no-install-recommends chromium)");
         return;
     };
     let site = match build() {
         Ok(site) => site,
         Err(missing @ BuildError::Missing { .. }) => {
-            println!("NOT TESTED: {missing}");
+            not_tested(&missing.to_string());
             return;
         }
         Err(failed) => panic!("{failed}"),

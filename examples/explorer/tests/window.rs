@@ -4,7 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -82,6 +82,11 @@ fn until(what: &str, mut is_so: impl FnMut() -> bool) {
     }
 }
 
+/// Says it where it is seen: what a test that passes prints is not.
+fn not_tested(why: &str) {
+    let _ = writeln!(std::io::stderr(), "NOT TESTED: {why}");
+}
+
 /// Catches a window that stays empty, a mouse that steers nothing, work that goes with the process, and a start that does not bring it back.
 #[test]
 fn a_window_is_driven_and_killed() {
@@ -94,7 +99,7 @@ fn a_window_is_driven_and_killed() {
             .is_ok()
     };
     let Some(display) = Display::open().filter(|_| there("xdotool") && there("import")) else {
-        println!("NOT TESTED: Xvfb, xdotool and ImageMagick's import are not all there");
+        not_tested("Xvfb, xdotool and ImageMagick's import are not all there");
         return;
     };
     let folder = tempfile::tempdir().unwrap();

@@ -4,6 +4,7 @@
 
 mod sample;
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -55,11 +56,16 @@ fn load(browser: &Path, folder: &Path, page: &Path) -> (String, Vec<String>) {
     (read("dom"), console)
 }
 
+/// Says it where it is seen: what a test that passes prints is not.
+fn not_tested(why: &str) {
+    let _ = writeln!(std::io::stderr(), "NOT TESTED: {why}");
+}
+
 /// Catches a script that fails or is refused by the page's own policy, and text that a browser takes for markup.
 #[test]
 fn a_browser_has_nothing_to_complain() {
     let Some(browser) = chromium() else {
-        println!("NOT TESTED: there is no Chromium on the path (Debian: apt-get install --no-install-recommends chromium)");
+        not_tested("there is no Chromium on the path (Debian: apt-get install --no-install-recommends chromium)");
         return;
     };
     // The files stay, to be looked at.
